@@ -1,0 +1,1 @@
+"""OpenMDAO components, the group that connects them, and drivers."""

@@ -1,0 +1,1 @@
+"""Tonal noise by Formulation 1A and its levels."""

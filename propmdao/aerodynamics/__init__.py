@@ -1,0 +1,1 @@
+"""Vortex lattice aerodynamics and the trim of the rotation speed."""

@@ -1,0 +1,1 @@
+"""Blade geometry: sections, lattice and surface mesh."""

@@ -1,0 +1,45 @@
+"""Records that pass between the disciplines: small frozen dataclasses that JAX sees as pytrees."""
+
+from __future__ import annotations
+
+import dataclasses
+from typing import TypeVar, dataclass_transform
+
+import jax
+
+T = TypeVar("T")
+
+
+@dataclass_transform(frozen_default=True)
+def record(cls: type[T]) -> type[T]:
+    """Make a class a frozen dataclass whose every field is a JAX pytree leaf (or subtree).
+
+    Parameters
+    ----------
+    cls : type
+        Class with annotated fields, each an array, a scalar or another record.
+
+    Returns
+    -------
+    type
+        The same class, frozen and registered with JAX, so that instances pass through
+        ``jit``, ``jvp`` and ``vjp``.
+    """
+    frozen = dataclasses.dataclass(frozen=True)(cls)
+    return jax.tree_util.register_dataclass(frozen)  # type: ignore[return-value]
+
+
+@record
+class PointLoads:
+    """Point forces on blade 1, constant in the rotating frame.
+
+    Attributes
+    ----------
+    position : (n, 3) array
+        Where the forces act, blade frame at azimuth 0 [m].
+    force : (n, 3) array
+        Force ON THE FLUID, blade frame at azimuth 0 [N].
+    """
+
+    position: jax.Array
+    force: jax.Array
