@@ -1,0 +1,40 @@
+"""How finely the blade, its wake and its sound are resolved."""
+
+from __future__ import annotations
+
+import dataclasses
+
+
+@dataclasses.dataclass(frozen=True)
+class Fidelity:
+    """Numbers of panels and harmonics; hashable, fixed at compile time.
+
+    Attributes
+    ----------
+    n_chordwise, n_spanwise : int
+        Panels of the vortex lattice on one blade.
+    n_contour, n_surface_span : int
+        Points around the section and along the span of the surface mesh
+        (the thesis' Tess_W x Tess_U, 65 x 80).
+    n_harmonics : int
+        Harmonics of the blade passage frequency.
+    """
+
+    n_chordwise: int = 8
+    n_spanwise: int = 24
+    n_contour: int = 65
+    n_surface_span: int = 80
+    n_harmonics: int = 10
+
+    def __post_init__(self) -> None:
+        """Refuse resolutions that no mesh can have."""
+        for field, least in (
+            ("n_chordwise", 1),
+            ("n_spanwise", 2),
+            ("n_contour", 5),
+            ("n_surface_span", 2),
+            ("n_harmonics", 1),
+        ):
+            value = getattr(self, field)
+            if value < least:
+                raise ValueError(f"{field} must be at least {least}; it is {value}")
