@@ -1,8 +1,8 @@
 """Quieter propellers by design: vortex lattice, Formulation 1A and OpenMDAO components."""
 
-import jax
+from propmdao import _jax_setup
 
 __version__ = "0.1.0.dev0"
 
-# Circulation and phase sums lose the digits that gradients need in single precision.
-jax.config.update("jax_enable_x64", True)
+_jax_setup.use_64_bit_floats()
+_jax_setup.keep_compiled_code()
