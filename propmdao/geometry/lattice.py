@@ -1,0 +1,61 @@
+"""The vortex lattice's corner points: the camber surface, cosine over span, equal over chord."""
+
+from __future__ import annotations
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+import numpy.typing as npt
+
+from propmdao.geometry.airfoil import chord_interpolation
+from propmdao.geometry.blade import Blade, SpanInterpolation
+from propmdao.geometry.section import place_sections, section_shape
+
+
+def lattice_span(root_r_over_R: float, n_spanwise: int) -> npt.NDArray[np.float64]:
+    """Radii of the lattice's chordwise edges, cosine spaced toward root and tip.
+
+    Parameters
+    ----------
+    root_r_over_R : float
+        Where the blade begins.
+    n_spanwise : int
+        Number of panels over the span.
+
+    Returns
+    -------
+    (n_spanwise + 1,) array
+        r/R from the root to 1.
+    """
+    angle = np.linspace(0.0, np.pi, n_spanwise + 1)
+    spacing = 0.5 * (1.0 - np.cos(angle))
+    return root_r_over_R + (1.0 - root_r_over_R) * spacing
+
+
+def lattice_nodes(blade: Blade, span: SpanInterpolation, n_chordwise: int) -> jax.Array:
+    """Corner points of the vortex lattice on the camber surface.
+
+    Parameters
+    ----------
+    blade : Blade
+        The blade.
+    span : SpanInterpolation
+        Interpolation to the n_spanwise + 1 radii of `lattice_span`.
+    n_chordwise : int
+        Number of panels over the chord, static under ``jit``.
+
+    Returns
+    -------
+    (n_chordwise + 1, n_spanwise + 1, 3) array
+        Positions in the blade frame at azimuth 0 [m]; row 0 is the leading edge, column 0 the
+        root.
+
+    Notes
+    -----
+    Equal panels over the chord: with the vortex at 1/4 and the collocation point at 3/4 of each,
+    they give the exact lift of a thin section (James, Comput. Methods Appl. Mech. Eng. 1, 1972).
+    """
+    fraction = np.linspace(0.0, 1.0, n_chordwise + 1)
+    operator = jnp.asarray(chord_interpolation(np.arccos(1.0 - 2.0 * fraction)))
+    camber, _ = section_shape(blade, span, operator)
+    return place_sections(blade, span, jnp.asarray(fraction), camber)

@@ -1,0 +1,115 @@
+"""The blade's outer surface: closed section contours over span, capped at root and tip."""
+
+from __future__ import annotations
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+import numpy.typing as npt
+
+from propmdao.geometry.airfoil import chord_interpolation
+from propmdao.geometry.blade import Blade, SpanInterpolation
+from propmdao.geometry.lattice import lattice_span
+from propmdao.geometry.section import place_sections, section_shape
+from propmdao.records import record
+
+
+@record
+class Panels:
+    """Flat panels of a closed surface.
+
+    Attributes
+    ----------
+    center : (n, 3) array
+        Mean of the corners, blade frame at azimuth 0 [m].
+    vector_area : (n, 3) array
+        Area times the outward normal [m^2]; they sum to zero.
+    """
+
+    center: jax.Array
+    vector_area: jax.Array
+
+
+def surface_span(root_r_over_R: float, n_span: int) -> npt.NDArray[np.float64]:
+    """Radii of the section contours, cosine spaced toward root and tip.
+
+    Parameters
+    ----------
+    root_r_over_R : float
+        Where the blade begins.
+    n_span : int
+        Number of contours (OpenVSP's Tess_U).
+
+    Returns
+    -------
+    (n_span,) array
+        r/R from the root to 1.
+    """
+    return lattice_span(root_r_over_R, n_span - 1)
+
+
+def surface_nodes(blade: Blade, span: SpanInterpolation, n_contour: int = 65) -> jax.Array:
+    """Points of the section contours.
+
+    Parameters
+    ----------
+    blade : Blade
+        The blade.
+    span : SpanInterpolation
+        Interpolation to the n_span radii of `surface_span`.
+    n_contour : int
+        Points around each section (OpenVSP's Tess_W), odd so that the leading edge is one of
+        them; static under ``jit``.
+
+    Returns
+    -------
+    (n_contour, n_span, 3) array
+        Positions in the blade frame at azimuth 0 [m], from the trailing edge over the upper
+        (suction) side to the leading edge and back along the lower side, cosine spaced.
+
+    Raises
+    ------
+    ValueError
+        If `n_contour` is even or less than 5.
+    """
+    if n_contour < 5 or n_contour % 2 == 0:
+        raise ValueError(f"n_contour must be odd and at least 5; got {n_contour}")
+    angle = np.linspace(np.pi, -np.pi, n_contour)
+    camber, thickness = section_shape(blade, span, jnp.asarray(chord_interpolation(np.abs(angle))))
+    side = jnp.asarray(0.5 * np.sign(np.round(angle, 12)))[:, None]
+    fraction = jnp.asarray(0.5 * (1.0 - np.cos(angle)))
+    return place_sections(blade, span, fraction, camber + side * thickness)
+
+
+def surface_panels(nodes: jax.Array) -> Panels:
+    """Close the contours into a watertight surface.
+
+    Parameters
+    ----------
+    nodes : (n_contour, n_span, 3) array
+        Points of `surface_nodes`.
+
+    Returns
+    -------
+    Panels
+        n_contour * (n_span - 1) panels of the skin, the one across the trailing edge included
+        (without area where that is sharp), then (n_contour - 1) / 2 across the root and as many
+        across the tip.
+    """
+    around = jnp.concatenate([nodes, nodes[:1]])
+    center, area = _quads(around[:-1, :-1], around[:-1, 1:], around[1:, 1:], around[1:, :-1])
+    half = (nodes.shape[0] - 1) // 2
+    upper, lower = nodes[: half + 1], nodes[half:][::-1]
+    root = _quads(upper[:-1, 0], upper[1:, 0], lower[1:, 0], lower[:-1, 0])
+    tip = _quads(upper[:-1, -1], lower[:-1, -1], lower[1:, -1], upper[1:, -1])
+    return Panels(
+        center=jnp.concatenate([center, root[0], tip[0]]),
+        vector_area=jnp.concatenate([area, root[1], tip[1]]),
+    )
+
+
+def _quads(a: jax.Array, b: jax.Array, c: jax.Array, d: jax.Array) -> tuple[jax.Array, jax.Array]:
+    """Return center and vector area of the quadrilaterals abcd, each (n, 3)."""
+    center = 0.25 * (a + b + c + d)
+    area = 0.5 * jnp.cross(c - a, d - b)
+    return center.reshape(-1, 3), area.reshape(-1, 3)
