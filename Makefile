@@ -1,0 +1,65 @@
+# Everything runs in .venv, made here on first use. Needs python3 (3.11 or newer), python3-venv, make.
+
+PYTHON ?= python3
+VENV := .venv
+BIN := $(VENV)/bin
+PIP := $(BIN)/python -m pip --disable-pip-version-check --quiet
+
+# Figures are written to files; no display is needed, or asked for.
+export MPLBACKEND := Agg
+
+.PHONY: help install study test validation lint format bench clean
+
+help:
+	@echo "make install     .venv with the propmdao command (edits to the source take effect at once)"
+	@echo "make study       the low-noise design study: tables and figures in results/"
+	@echo "make test        the tests, without the slow ones"
+	@echo "make validation  the slow tests and the comparisons with experiment and other codes;"
+	@echo "                 PROPMDAO_REFERENCE_DATA names the folder of reference data"
+	@echo "make lint        ruff and mypy"
+	@echo "make format      rewrite the source as 'make lint' wants it"
+	@echo "make bench       benchmarks"
+	@echo "make clean       remove .venv and everything built"
+
+install: $(VENV)/installed
+
+study: $(VENV)/installed
+	$(BIN)/python studies/low_noise_design.py
+
+test: $(VENV)/dev
+	$(BIN)/python -m pytest -m "not slow"
+
+validation: $(VENV)/dev
+	$(BIN)/python -m pytest -m "slow or validation"
+
+lint: $(VENV)/dev
+	$(BIN)/ruff check .
+	$(BIN)/ruff format --check .
+	$(BIN)/mypy
+
+format: $(VENV)/dev
+	$(BIN)/ruff check --fix .
+	$(BIN)/ruff format .
+
+bench: $(VENV)/dev
+	$(BIN)/python -m pytest benchmarks --benchmark-only
+
+clean:
+	rm -rf $(VENV) build dist *.egg-info .pytest_cache .mypy_cache .ruff_cache .benchmarks
+
+# Stamp files: a second call finds the work done. pyproject.toml holds what has to be installed.
+$(VENV)/created:
+	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || \
+	  { echo "propmdao needs Python 3.11 or newer; $(PYTHON) is not that: make $(MAKECMDGOALS) PYTHON=..." >&2; exit 1; }
+	@$(PYTHON) -c 'import ensurepip, venv' 2>/dev/null || \
+	  { echo "$(PYTHON) cannot make virtual environments: apt install python3-venv" >&2; exit 1; }
+	$(PYTHON) -m venv $(VENV)
+	@touch $@
+
+$(VENV)/installed: $(VENV)/created pyproject.toml
+	$(PIP) install --editable '.[plots]'
+	@touch $@
+
+$(VENV)/dev: $(VENV)/installed
+	$(PIP) install --editable '.[plots,test,lint]'
+	@touch $@
