@@ -1,1 +1,6 @@
 """OpenMDAO components, the group that connects them, and drivers."""
+
+from propmdao.components.constrained_search import Generation
+from propmdao.components.differential_evolution_driver import DifferentialEvolutionDriver
+
+__all__ = ["DifferentialEvolutionDriver", "Generation"]
