@@ -1,0 +1,128 @@
+"""Tables for people: the catalogue, operating points, noise."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Sequence
+from typing import Any
+
+from rich import box
+from rich.console import Console
+from rich.table import Table
+
+from propmdao.propeller import Propeller
+
+# What the numbers leave out stands below them, where it is read.
+NOTES = (
+    "Inviscid lattice: no profile drag, so torque and power are low and eta is high.",
+    "Tones only, no broadband noise: the propeller is louder, above all in dBA.",
+)
+
+
+def print_catalog(propellers: Iterable[Propeller]) -> None:
+    """Print a table of propellers: name, diameter, number of blades, airfoils.
+
+    Parameters
+    ----------
+    propellers : iterable of Propeller
+        One line each.
+    """
+    table = _table()
+    table.add_column("name", no_wrap=True)
+    table.add_column("diameter m", justify="right")
+    table.add_column("blades", justify="right")
+    table.add_column("airfoils, hub to tip")
+    for propeller in propellers:
+        airfoils = ", ".join(name for _, name in propeller.airfoils)
+        table.add_row(
+            propeller.name, f"{propeller.diameter:.4g}", str(propeller.n_blades), airfoils
+        )
+    console = Console()
+    console.print(table)
+    console.print("Where the numbers come from, and what is assumed: propmdao list --json")
+
+
+def print_analyses(
+    propeller: Propeller, twist_offset_deg: float, analyses: Sequence[dict[str, Any]]
+) -> None:
+    """Print the operating points of one propeller and the levels at their observers.
+
+    Parameters
+    ----------
+    propeller : Propeller
+        What was analysed.
+    twist_offset_deg : float
+        What was added to its blade angle [deg]; a calibrated blade is not the published one.
+    analyses : sequence of dict
+        Results with the keys of ``propmdao analyze --json``.
+    """
+    console = Console()
+    first = analyses[0]
+    console.print(
+        f"{propeller.name}: {propeller.n_blades} blades, diameter {propeller.diameter:.4g} m,"
+        f" speed {first['speed']:.4g} m/s, air {first['rho']:.4g} kg/m3",
+        highlight=False,
+    )
+    if twist_offset_deg:
+        console.print(f"Twist offset {twist_offset_deg:+.4g} deg: not the geometry as described.")
+    console.print(_operating_points(analyses))
+    if any(analysis["observers"] for analysis in analyses):
+        console.print(_levels(analyses))
+    else:
+        console.print("No observers: --arc RADIUS ELEVATION... adds their noise.\n")
+    for analysis in analyses:
+        if not analysis["converged"]:
+            console.print(f"NOT CONVERGED at {analysis['rpm']:.1f} rpm: do not use these numbers.")
+    for note in NOTES:
+        console.print(note)
+
+
+def _operating_points(analyses: Iterable[dict[str, Any]]) -> Table:
+    table = _table()
+    columns = {
+        "rpm": ("rpm", ".1f"),
+        "J": ("J", ".4f"),
+        "thrust": ("thrust\nN", "#.4g"),
+        "torque": ("torque\nN m", "#.4g"),
+        "shaft_power": ("power\nW", "#.4g"),
+        "CT": ("CT", ".5f"),
+        "CQ": ("CQ", ".5f"),
+        "CP": ("CP", ".5f"),
+        "eta": ("eta", ".3f"),
+    }
+    for heading, _ in columns.values():
+        table.add_column(heading, justify="right")
+    for analysis in analyses:
+        table.add_row(*(_format(analysis[key], form) for key, (_, form) in columns.items()))
+    return table
+
+
+def _levels(analyses: Iterable[dict[str, Any]]) -> Table:
+    table = _table()
+    columns = {
+        "radius": ("radius\nm", ".4g"),
+        "elevation_deg": ("elevation\ndeg", ".4g"),
+        "spl_bpf_db": ("BPF\ndB", ".1f"),
+        "oaspl_db": ("OASPL\ndB", ".1f"),
+        "oaspl_thickness_db": ("thickness\ndB", ".1f"),
+        "oaspl_loading_db": ("loading\ndB", ".1f"),
+        "oaspl_dba": ("tones\ndBA", ".1f"),
+    }
+    table.add_column("rpm", justify="right")
+    for heading, _ in columns.values():
+        table.add_column(heading, justify="right")
+    for analysis in analyses:
+        for observer in analysis["observers"]:
+            table.add_row(
+                f"{analysis['rpm']:.1f}",
+                *(_format(observer[key], form) for key, (_, form) in columns.items()),
+            )
+    return table
+
+
+def _table() -> Table:
+    return Table(box=box.SIMPLE, pad_edge=False, collapse_padding=True)
+
+
+def _format(value: float, form: str) -> str:
+    return format(value, form) if math.isfinite(value) else "-"

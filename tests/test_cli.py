@@ -1,0 +1,263 @@
+"""The command line: what it accepts, prints and refuses. The physics is tested elsewhere."""
+
+from __future__ import annotations
+
+import json
+import math
+import os
+import subprocess
+import sys
+import types
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+import propmdao
+from propmdao.catalog import catalog_names
+from propmdao.cli import main
+
+PROPELLER = "apcsf_11x4.7"
+
+
+class Recorder:
+    """In place of `propmdao.analysis.analyze`: keeps what it was asked, answers at once."""
+
+    def __init__(self) -> None:
+        self.calls: list[dict[str, Any]] = []
+
+    def analyze(self, propeller: object, **asked: Any) -> Recorder:
+        self.calls.append(asked)
+        return self
+
+    def to_dict(self) -> dict[str, Any]:
+        asked = self.calls[-1]
+        point = dict.fromkeys(["J", "torque", "shaft_power", "CT", "CQ", "CP"], 0.5)
+        levels = dict.fromkeys(["spl_bpf_db", "oaspl_db", "oaspl_loading_db", "oaspl_dba"], 50.0)
+        return {
+            "rpm": 4000.0 if asked["rpm"] is None else asked["rpm"],
+            "speed": asked["speed"],
+            "rho": asked["density"],
+            **point,
+            "thrust": 1.5,
+            "eta": math.nan,
+            "converged": True,
+            "observers": [
+                {"elevation_deg": elevation, "radius": radius, **levels}
+                | {"oaspl_thickness_db": -math.inf, "harmonics": [], "third_octave": []}
+                for radius, elevation in asked["observers"]
+            ],
+        }
+
+
+@pytest.fixture
+def recorder(monkeypatch: pytest.MonkeyPatch) -> Recorder:
+    recorder = Recorder()
+    module = types.SimpleNamespace(analyze=recorder.analyze)
+    monkeypatch.setitem(sys.modules, "propmdao.analysis", module)
+    return recorder
+
+
+def run(*arguments: str, **environment: str) -> subprocess.CompletedProcess[str]:
+    """The installed command in a process of its own, without a display."""
+    surroundings = {key: value for key, value in os.environ.items() if key != "DISPLAY"}
+    return subprocess.run(
+        [sys.executable, "-m", "propmdao.cli", *arguments],
+        env=surroundings | environment,
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+
+
+def refused(capsys: pytest.CaptureFixture[str], *arguments: str) -> str:
+    """The one line on stderr with which the command line refuses the arguments."""
+    try:
+        status = main(arguments)
+    except SystemExit as exit_:
+        status = exit_.code
+    output = capsys.readouterr()
+    assert status == 2
+    assert output.out == ""
+    assert output.err.startswith("propmdao")
+    assert output.err.count("\n") == 1 and output.err.endswith("\n")
+    return output.err
+
+
+def test_list_names_the_whole_catalogue(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["list"]) == 0
+    table = capsys.readouterr().out
+    assert catalog_names()
+    assert all(name in table for name in catalog_names())
+
+
+def test_list_as_json_says_where_the_numbers_come_from(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["list", "--json"]) == 0
+    propellers = json.loads(capsys.readouterr().out)
+    assert [propeller["name"] for propeller in propellers] == catalog_names()
+    assert all(propeller["source"] and propeller["diameter"] > 0 for propeller in propellers)
+
+
+def test_analyze_passes_on_what_was_asked(
+    recorder: Recorder, capsys: pytest.CaptureFixture[str]
+) -> None:
+    status = main(
+        f"analyze {PROPELLER} --thrust 1.2 --speed 8 --rho 1.1 --twist-offset -1.5"
+        " --arc 1.905 -45 -.5 45 --arc 3 0 --json".split()
+    )
+    assert status == 0
+    assert recorder.calls == [
+        {
+            "rpm": None,
+            "thrust": 1.2,
+            "speed": 8.0,
+            "density": 1.1,
+            "twist_offset_deg": -1.5,
+            "observers": [(1.905, -45.0), (1.905, -0.5), (1.905, 45.0), (3.0, 0.0)],
+        }
+    ]
+
+
+def test_defaults_are_hover_in_standard_air_without_observers(recorder: Recorder) -> None:
+    assert main(["analyze", PROPELLER, "--rpm", "4000"]) == 0
+    (asked,) = recorder.calls
+    assert asked == {
+        "rpm": 4000.0,
+        "thrust": None,
+        "speed": 0.0,
+        "density": 1.225,
+        "twist_offset_deg": 0.0,
+        "observers": [],
+    }
+
+
+@pytest.mark.parametrize(
+    ("given", "rpm"),
+    [
+        (["4000", "--rpm", "3000"], [4000, 3000]),
+        (["3000:5000:1000"], [3000, 4000, 5000]),
+        (["3000:4999:1000"], [3000, 4000]),
+        (["0:0.3:0.1"], [0, 0.1, 0.2, 0.3]),
+        (["4000:4000:10"], [4000]),
+        (["1000", "--rpm", "2000:3000:500"], [1000, 2000, 2500, 3000]),
+    ],
+)
+def test_several_rpm_give_a_list_and_a_range_includes_its_stop(
+    recorder: Recorder, capsys: pytest.CaptureFixture[str], given: list[str], rpm: list[float]
+) -> None:
+    assert main(["analyze", PROPELLER, "--rpm", *given, "--json"]) == 0
+    results = json.loads(capsys.readouterr().out)
+    assert [result["rpm"] for result in results] == pytest.approx(rpm)
+
+
+def test_one_rpm_gives_an_object_of_strict_json(
+    recorder: Recorder, capsys: pytest.CaptureFixture[str]
+) -> None:
+    def forbidden(constant: str) -> None:
+        raise AssertionError(f"{constant} is no JSON")
+
+    assert main(["analyze", PROPELLER, "--rpm", "4000", "--arc", "2", "0", "--json"]) == 0
+    result = json.loads(capsys.readouterr().out, parse_constant=forbidden)
+    assert result["rpm"] == 4000.0
+    assert result["eta"] is None
+    assert result["observers"][0]["oaspl_thickness_db"] is None
+
+
+def test_tables_say_what_is_left_out_and_fit_eighty_columns(
+    recorder: Recorder, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("COLUMNS", "80")
+    assert main(["analyze", PROPELLER, "--rpm", "12345", "--arc", "1.905", "-45"]) == 0
+    output = capsys.readouterr().out
+    assert "no profile drag" in output
+    assert "no broadband noise" in output
+    assert "…" not in output
+    assert "nan" not in output and "inf" not in output
+
+
+def test_a_twist_offset_is_said_above_the_table(
+    recorder: Recorder, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(["analyze", PROPELLER, "--rpm", "4000", "--twist-offset", "-1.5"]) == 0
+    assert "Twist offset -1.5 deg" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        ("", "required: COMMAND"),
+        ("analyse", "invalid choice"),
+        (f"analyze {PROPELLER}", "--rpm --thrust is required"),
+        (f"analyze {PROPELLER} --rpm 4000 --thrust 1", "not allowed with argument --rpm"),
+        (f"analyze {PROPELLER} --rpm fast", "'fast' is not a number"),
+        (f"analyze {PROPELLER} --rpm nan", "'nan' is not a number"),
+        (f"analyze {PROPELLER} --rpm 4000 --speed inf", "'inf' is not a number"),
+        (f"analyze {PROPELLER} --rpm 3000:5000", "START:STOP:STEP"),
+        (f"analyze {PROPELLER} --rpm 3000:5000:0", "STEP of a range must be positive"),
+        (f"analyze {PROPELLER} --rpm 5000:3000:100", "STOP not below START"),
+        (f"analyze {PROPELLER} --rpm 0:100000:0.001", "at most 1000"),
+        (f"analyze {PROPELLER} --rpm 4000 --arc", "--arc"),
+        (f"analyze {PROPELLER} --rpm 4000 --arc 1.905", "at least one elevation"),
+        (f"analyze {PROPELLER} --rpm 4000 --ar 1.905 0", "unrecognized arguments"),
+        ("analyze apcsf_11x47 --rpm 4000", PROPELLER),
+        ("analyze no_such_file.toml --rpm 4000", "no_such_file.toml"),
+    ],
+)
+def test_bad_input_is_refused_in_one_line(
+    recorder: Recorder, capsys: pytest.CaptureFixture[str], arguments: str, message: str
+) -> None:
+    assert message in refused(capsys, *arguments.split())
+    assert recorder.calls == []
+
+
+def test_malformed_toml_is_refused_in_one_line(
+    recorder: Recorder, capsys: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
+    file = tmp_path / "blade.toml"
+    file.write_text('name = "blade"\ndiameter = = 0.3\n')
+    assert "line 2" in refused(capsys, "analyze", str(file), "--rpm", "4000")
+
+
+def test_interrupt_ends_quietly(
+    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def interrupted(*_: object, **__: object) -> None:
+        raise KeyboardInterrupt
+
+    module = types.SimpleNamespace(analyze=interrupted)
+    monkeypatch.setitem(sys.modules, "propmdao.analysis", module)
+    assert main(["analyze", PROPELLER, "--rpm", "4000"]) == 130
+    output = capsys.readouterr()
+    assert output.out == output.err == ""
+
+
+@pytest.mark.parametrize("form", [[], ["--json"]])
+def test_a_closed_pipe_ends_quietly(form: list[str]) -> None:
+    reader, writer = os.pipe()
+    os.close(reader)
+    with os.fdopen(writer, "w") as pipe:
+        result = subprocess.run(
+            [sys.executable, "-m", "propmdao.cli", "list", *form],
+            stdout=pipe,
+            stderr=subprocess.PIPE,
+            text=True,
+            check=False,
+        )
+    assert result.stderr == ""
+    assert result.returncode == 1
+
+
+def test_version_is_that_of_the_package() -> None:
+    version = run("--version")
+    assert (version.returncode, version.stderr) == (0, "")
+    assert version.stdout == f"propmdao {propmdao.__version__}\n"
+
+
+def test_help_explains_every_option(capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(SystemExit) as exit_:
+        main(["analyze", "--help"])
+    assert exit_.value.code == 0
+    text = capsys.readouterr().out
+    for option in ("--rpm", "--thrust", "--speed", "--rho", "--twist-offset", "--arc", "--json"):
+        assert option in text
+    assert "examples:" in text

@@ -1,0 +1,130 @@
+"""What is installed is what stands in the folders, and what the README says can be typed."""
+
+from __future__ import annotations
+
+import re
+import shlex
+import subprocess
+import sys
+import tomllib
+from importlib import metadata
+from importlib.resources import files
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+import propmdao
+from propmdao import cli
+from propmdao.catalog import airfoil_file, airfoil_names, catalog_names, propeller_file
+
+OPENMDAO_NAMES = {
+    "openmdao_component": [
+        "AcousticsComp",
+        "AerodynamicsComp",
+        "GeometryComp",
+        "RotationSpeedComp",
+    ],
+    "openmdao_group": ["PropellerGroup"],
+    "openmdao_driver": ["DifferentialEvolutionDriver"],
+}
+
+
+@pytest.fixture(scope="module")
+def project(checkout: Path) -> dict[str, Any]:
+    return tomllib.loads((checkout / "pyproject.toml").read_text())
+
+
+@pytest.fixture(scope="module")
+def distribution() -> metadata.Distribution:
+    try:
+        return metadata.distribution("propmdao")
+    except metadata.PackageNotFoundError:
+        pytest.skip("propmdao is not installed, only on the path")
+
+
+def test_every_package_folder_is_listed(checkout: Path, project: dict[str, Any]) -> None:
+    # setuptools drops a package that is not listed without a word.
+    folders = {
+        ".".join(file.parent.relative_to(root).parts)
+        for root, top in ((checkout, "propmdao"), (checkout, "components"))
+        for file in (root / top).rglob("__init__.py")
+        if "propmdao/components" not in file.as_posix()
+    }
+    packages = {re.sub("^components", "propmdao.components", folder) for folder in folders}
+    assert sorted(packages) == project["tool"]["setuptools"]["packages"]
+
+
+def test_the_components_link_is_relative(checkout: Path) -> None:
+    assert (checkout / "propmdao" / "components").readlink() == Path("../components")
+
+
+def test_version_has_one_source(distribution: metadata.Distribution) -> None:
+    assert distribution.version == propmdao.__version__
+
+
+def test_catalogue_files_are_installed() -> None:
+    assert len(catalog_names()) >= 3
+    for name in catalog_names():
+        assert propeller_file(name).is_file()
+    for name in airfoil_names():
+        assert airfoil_file(name).is_file()
+
+
+def test_types_are_shipped() -> None:
+    assert (files("propmdao") / "py.typed").is_file()
+
+
+def test_studies_and_tests_are_not_installed(distribution: metadata.Distribution) -> None:
+    top_level = {file.parts[0] for file in distribution.files or ()}
+    assert not top_level & {"studies", "tests", "components", "benchmarks", "docs"}
+
+
+@pytest.mark.parametrize("group", OPENMDAO_NAMES)
+def test_openmdao_finds_the_classes(distribution: metadata.Distribution, group: str) -> None:
+    found = [point for point in distribution.entry_points if point.group == group]
+    assert sorted(point.load().__name__ for point in found) == OPENMDAO_NAMES[group]
+
+
+def test_openmdao_lists_the_components(distribution: metadata.Distribution) -> None:
+    listing = subprocess.run(
+        [sys.executable, "-m", "openmdao.utils.om", "list_installed", "-i", "propmdao"],
+        capture_output=True,
+        text=True,
+        check=True,
+    ).stdout
+    for names in OPENMDAO_NAMES.values():
+        assert all(name.lower() in listing.lower() for name in names)
+
+
+def test_the_command_line_does_without_openmdao_and_matplotlib() -> None:
+    # They take seconds to import and nothing on the command line needs them.
+    code = (
+        "import sys, propmdao.cli as cli; cli.main(['list'])\n"
+        "assert not {'openmdao', 'matplotlib'} & set(sys.modules)"
+    )
+    subprocess.run([sys.executable, "-c", code], check=True, capture_output=True)
+
+
+def readme_commands(checkout: Path) -> list[list[str]]:
+    """Every line of the README's code blocks in the shell's language, as words."""
+    blocks = re.findall(
+        r"```(?:sh|console|bash)\n(.*?)```", (checkout / "README.md").read_text(), re.S
+    )
+    lines = "".join(blocks).replace("\\\n", " ").splitlines()
+    return [shlex.split(line.removeprefix("$ "), comments=True) for line in lines if line.strip()]
+
+
+def test_make_targets_in_the_readme_exist(checkout: Path) -> None:
+    targets = re.findall(r"^([\w-]+):", (checkout / "Makefile").read_text(), re.M)
+    named = [words[1] for words in readme_commands(checkout) if words[:1] == ["make"]]
+    assert {"install", "study", "test"} <= set(named)
+    assert set(named) <= set(targets)
+
+
+def test_command_lines_in_the_readme_parse(checkout: Path) -> None:
+    commands = [words for words in readme_commands(checkout) if words[0].endswith("propmdao")]
+    assert commands
+    for words in commands:
+        if "--help" not in words:
+            cli.build_parser().parse_args(words[1:])
