@@ -29,7 +29,7 @@ class Fidelity:
     def __post_init__(self) -> None:
         """Refuse resolutions that no mesh can have."""
         for field, least in (
-            ("n_chordwise", 1),
+            ("n_chordwise", 2),
             ("n_spanwise", 2),
             ("n_contour", 5),
             ("n_surface_span", 2),

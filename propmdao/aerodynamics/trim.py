@@ -1,0 +1,213 @@
+"""Rotation speed at which the thrust is the one required."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import partial
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+from jax import Array
+
+from propmdao.aerodynamics.lattice_loads import LatticeGeometry, lattice_geometry
+from propmdao.aerodynamics.roots import implicit_root
+from propmdao.aerodynamics.steady import loads_at, solve_steady
+from propmdao.aerodynamics.wake import momentum_induced_velocity
+
+_TOLERANCE = 1.0e-8
+_MAX_EVALUATIONS = 60
+_RPM = 30.0 / np.pi
+
+
+class TrimError(ValueError):
+    """No rotation speed between the bounds gives the required thrust."""
+
+
+def rotation_speed_for_thrust(
+    nodes: Array,
+    n_blades: int,
+    radius: float,
+    speed: float,
+    density: float,
+    thrust_required: float,
+    bounds: tuple[float, float],
+) -> Array:
+    """Solve for the rotation speed that gives the required thrust.
+
+    Parameters
+    ----------
+    nodes : (nc + 1, ns + 1, 3) array
+        Corner points of the lattice of blade 1 [m].
+    n_blades : int
+        Number of equally spaced blades.
+    radius, speed, density, thrust_required : float
+        Tip radius [m], axial flight speed [m/s], air density [kg/m^3], thrust of all blades [N].
+    bounds : (float, float)
+        Lowest and highest rotation speed [rad/s].
+
+    Returns
+    -------
+    float
+        Rotation speed, to 1e-8 relative [rad/s].
+
+    Raises
+    ------
+    TrimError
+        The thrust required lies outside what the bounds give; the message has both ends.
+    """
+    low, high = (float(bound) for bound in bounds)
+    if not 0.0 < low < high:
+        raise TrimError(
+            f"rpm bounds must be positive and increasing; they are {low * _RPM:g} and {high * _RPM:g}"
+        )
+    flight = (float(speed), float(density))
+    omega, missing_at_low, missing_at_high = solve_rotation_speed(
+        nodes, n_blades, float(radius), *flight, float(thrust_required), low, high
+    )
+    if not (missing_at_low >= 0.0 >= missing_at_high and np.isfinite(omega)):
+        at = [
+            float(solve_steady(nodes, n_blades, float(radius), end, *flight).thrust)
+            for end in (low, high)
+        ]
+        raise TrimError(
+            f"thrust {float(thrust_required):g} N is out of reach at {float(speed):g} m/s: "
+            f"{at[0]:.4g} N at {low * _RPM:g} rpm, {at[1]:.4g} N at {high * _RPM:g} rpm"
+        )
+    return omega
+
+
+def rotation_speed_by_interpolation(
+    nodes: Array,
+    n_blades: int,
+    radius: Array,
+    speed: Array,
+    density: Array,
+    thrust_required: Array,
+    low: Array,
+    high: Array,
+) -> Array:
+    """Rotation speed by the thesis' rule: thrust linear between the two bounds.
+
+    Off by up to 5 % in thrust, which is nearly a parabola; kept to show by how much.
+
+    Parameters
+    ----------
+    nodes, n_blades, radius, speed, density, thrust_required
+        As for `rotation_speed_for_thrust`.
+    low, high : float
+        The two rotation speeds at which the thrust is computed [rad/s].
+
+    Returns
+    -------
+    float
+        Rotation speed; beyond the two, an extrapolation [rad/s].
+    """
+    at_low, at_high = (
+        solve_steady(nodes, n_blades, radius, end, speed, density).thrust for end in (low, high)
+    )
+    return low + (high - low) * (thrust_required - at_low) / (at_high - at_low)
+
+
+@partial(jax.jit, static_argnames="n_blades")
+def solve_rotation_speed(
+    nodes: Array,
+    n_blades: int,
+    radius: Array,
+    speed: Array,
+    density: Array,
+    thrust_required: Array,
+    low: Array,
+    high: Array,
+) -> tuple[Array, Array, Array]:
+    """Rotation speed for a thrust, and how much thrust is missing at either bound.
+
+    The wake is transported by the induced velocity of the thrust required, which is that of
+    the solution, so that one lattice solution a trial is enough; at any other rotation speed the
+    thrust found this way errs, but never to the other side of the thrust required.
+
+    Parameters
+    ----------
+    nodes, n_blades, radius, speed, density, thrust_required
+        As for `rotation_speed_for_thrust`.
+    low, high : float
+        Bounds [rad/s].
+
+    Returns
+    -------
+    rotation_speed, missing_at_low, missing_at_high : float
+        The root, exactly differentiable, means nothing unless the thrust missing is positive
+        at `low` and negative at `high` [rad/s], [N], [N].
+    """
+    lattice = lattice_geometry(nodes, n_blades, radius)
+
+    def missing(omega: Array) -> Array:
+        return thrust_required - _thrust_in_wake_of(
+            thrust_required, lattice, n_blades, radius, omega, speed, density
+        )
+
+    def solve(f: Callable[[Array], Array], start: Array) -> tuple[Array, tuple[Array, Array]]:
+        del start
+        return _bracketed_search(f, thrust_required, low, high)
+
+    omega, (at_low, at_high) = implicit_root(missing, low, solve)
+    return omega, at_low, at_high
+
+
+def _thrust_in_wake_of(
+    wake_thrust: Array,
+    lattice: LatticeGeometry,
+    n_blades: int,
+    radius: Array,
+    omega: Array,
+    speed: Array,
+    density: Array,
+) -> Array:
+    """Thrust at a rotation speed in the wake of a propeller that gives `wake_thrust`."""
+    w = momentum_induced_velocity(
+        wake_thrust, speed, omega * radius, density, jnp.pi * radius**2
+    )
+    return n_blades * loads_at(lattice, n_blades, radius, omega, speed, density, w).thrust
+
+
+def _bracketed_search(
+    missing: Callable[[Array], Array], thrust: Array, low: Array, high: Array
+) -> tuple[Array, tuple[Array, Array]]:
+    """Root of the missing thrust, and its values at either bound, in three to six trials.
+
+    Both bounds are evaluated first. Then CT, taken as a straight line in J through the last
+    two trials, gives the next (it nearly is one); where that leaves the bracket, bisect.
+    """
+
+    def unfinished(state: tuple[Array, ...]) -> Array:
+        count, lo, hi, x, (x1, _), _, (at_low, at_high) = state
+        bracketed = (count < 2) | ((at_low >= 0.0) & (at_high <= 0.0))
+        moved = (count < 2) | (jnp.abs(x - x1) > _TOLERANCE * jnp.abs(x))
+        return (count < _MAX_EVALUATIONS) & bracketed & moved
+
+    def step(state: tuple[Array, ...]) -> tuple[Array, ...]:
+        count, lo, hi, x, (x1, f1), _, (at_low, at_high) = state
+        f = missing(x)
+        at_low = jnp.where(count == 0, f, at_low)
+        at_high = jnp.where(count == 1, f, at_high)
+        lo, hi = jnp.where(f >= 0.0, x, lo), jnp.where(f < 0.0, x, hi)
+        trial = _where_linear_ct_gives(thrust, x, thrust - f, x1, thrust - f1)
+        inside = (trial > lo) & (trial < hi)
+        following = jnp.where(inside, trial, 0.5 * (lo + hi))
+        following = jnp.where(count == 0, high, jnp.where(f == 0.0, x, following))
+        return count + 1, lo, hi, following, (x, f), (x1, f1), (at_low, at_high)
+
+    zero = jnp.zeros_like(low)
+    state = (0, low, high, low, (zero, zero), (zero, zero), (zero, zero))
+    _, _, _, omega, _, _, ends = jax.lax.while_loop(unfinished, step, state)
+    return omega, ends
+
+
+def _where_linear_ct_gives(thrust: Array, x1: Array, t1: Array, x2: Array, t2: Array) -> Array:
+    """Rotation speed for a thrust when T / Omega^2 = a + b / Omega holds through two points."""
+    u1, u2 = 1.0 / x1, 1.0 / x2
+    c1, c2 = t1 * u1**2, t2 * u2**2
+    b = (c1 - c2) / (u1 - u2)
+    a = c1 - b * u1
+    # T u^2 = a + b u, in the form that also holds for T = 0.
+    return (-b + jnp.sqrt(b * b + 4.0 * thrust * a)) / (2.0 * a)
