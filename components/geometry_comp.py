@@ -1,0 +1,151 @@
+"""Blade distributions to vortex lattice and surface mesh."""
+
+from __future__ import annotations
+
+import dataclasses
+from typing import Any
+
+import numpy as np
+import openmdao.api as om
+
+from propmdao.components.jax_component import Arrays, JaxComponent
+from propmdao.fidelity import Fidelity
+from propmdao.geometry.blade import (
+    Blade,
+    SpanInterpolation,
+    design_lift_coefficient,
+    span_interpolation,
+)
+from propmdao.geometry.lattice import lattice_nodes, lattice_span
+from propmdao.geometry.surface import surface_nodes, surface_span
+from propmdao.propeller import Propeller
+
+CAMBER_INPUTS = ("camber_over_chord", "design_lift_coefficient")
+
+
+def blade_distributions(propeller: Propeller, camber: str) -> dict[str, Any]:
+    """Values at the propeller's stations of all distributions that `GeometryComp` takes.
+
+    Parameters
+    ----------
+    propeller : Propeller
+        The described propeller.
+    camber : str
+        ``"camber_over_chord"`` or ``"design_lift_coefficient"``.
+
+    Returns
+    -------
+    dict of (n_stations,) arrays
+        By input name; `beta` in radians.
+    """
+    blade = Blade.from_propeller(propeller)
+    names = ("chord_over_R", "beta", "sweep_over_R", "rake_over_R", "thickness_over_chord")
+    values = {name: np.asarray(getattr(blade, name)) for name in names}
+    values[camber] = np.asarray(blade.camber_over_chord)
+    if camber == "design_lift_coefficient":
+        values[camber] = values[camber] * np.asarray(design_lift_coefficient(blade.camber_shape))
+    return values
+
+
+class GeometryComp(JaxComponent):
+    """Meshes of blade 1 from distributions at the stations of a propeller.
+
+    Inputs
+    ------
+    chord_over_R : (n_stations,) array
+        Chord over tip radius. All distributions start as the propeller's.
+    beta : (n_stations,) array
+        Blade angle from the rotor plane, ``rad``: connect ``deg`` as you like.
+    sweep_over_R, rake_over_R : (n_stations,) arrays
+        Quarter chord aft (against rotation) of the radial line, and toward thrust.
+    thickness_over_chord : (n_stations,) array
+        Maximum thickness over chord.
+    camber_over_chord : (n_stations,) array
+        Maximum camber over chord, if option `camber` names it; the shape of the camber line is
+        that of the propeller's airfoils.
+    design_lift_coefficient : (n_stations,) array
+        Or the camber as design lift coefficient (thin-airfoil theory), if `camber` names that.
+
+    Outputs
+    -------
+    lattice_nodes : (n_chordwise + 1, n_spanwise + 1, 3) array
+        Corner points of the vortex lattice, leading edge and root first, ``m``.
+    surface_nodes : (n_contour, n_surface_span, 3) array
+        Points of the section contours for acoustics, ``m``.
+
+    Options
+    -------
+    propeller : Propeller
+        Stations, airfoils, radius and initial values.
+    fidelity : Fidelity
+        Numbers of panels.
+    camber : str
+        Which of the two camber inputs there is.
+
+    Raises
+    ------
+    om.AnalysisError
+        When a chord is not positive or a thickness not between 0 and 1 (splines can overshoot).
+    """
+
+    def initialize(self) -> None:
+        self.options.declare("propeller", types=Propeller, desc="Stations, airfoils, radius.")
+        self.options.declare("fidelity", Fidelity(), types=Fidelity, desc="Numbers of panels.")
+        self.options.declare(
+            "camber", "camber_over_chord", values=CAMBER_INPUTS, desc="How camber is given."
+        )
+
+    def setup(self) -> None:
+        propeller, fidelity = self.options["propeller"], self.options["fidelity"]
+        for name, value in blade_distributions(propeller, self.options["camber"]).items():
+            self.add_input(name, val=value, units="rad" if name == "beta" else None)
+        self.add_output(
+            "lattice_nodes",
+            shape=(fidelity.n_chordwise + 1, fidelity.n_spanwise + 1, 3),
+            units="m",
+            desc="Corner points of the vortex lattice of blade 1.",
+        )
+        self.add_output(
+            "surface_nodes",
+            shape=(fidelity.n_contour, fidelity.n_surface_span, 3),
+            units="m",
+            desc="Points of the section contours of blade 1.",
+        )
+        stations = propeller.r_over_R
+        root = float(stations[0])
+        self.function = _meshes
+        self.static = fidelity
+        self.constants = (
+            Blade.from_propeller(propeller),
+            span_interpolation(stations, lattice_span(root, fidelity.n_spanwise)),
+            span_interpolation(stations, surface_span(root, fidelity.n_surface_span)),
+        )
+
+    def check(self, inputs: Any, values: Any) -> None:
+        chord, thickness = inputs["chord_over_R"], inputs["thickness_over_chord"]
+        for name, value, holds, rule in (
+            ("chord_over_R", chord, chord > 0.0, "be positive"),
+            ("thickness_over_chord", thickness, (thickness > 0.0) & (thickness < 1.0),
+             "be above 0 and below 1"),
+        ):  # fmt: skip
+            for station in np.flatnonzero(~holds)[:1]:
+                r = self.options["propeller"].r_over_R[station]
+                raise om.AnalysisError(
+                    f"{name} must {rule}; station {station} (r/R {r:g}) has {value[station]:g}"
+                )
+
+
+def _meshes(
+    inputs: Arrays, constants: tuple[Blade, SpanInterpolation, SpanInterpolation], static: Fidelity
+) -> Arrays:
+    blade, lattice_radii, surface_radii = constants
+    changed = dict(inputs)
+    if "design_lift_coefficient" in changed:
+        changed["camber_over_chord"] = changed.pop(
+            "design_lift_coefficient"
+        ) / design_lift_coefficient(blade.camber_shape)
+    blade = dataclasses.replace(blade, **changed)
+    return {
+        "lattice_nodes": lattice_nodes(blade, lattice_radii, static.n_chordwise),
+        "surface_nodes": surface_nodes(blade, surface_radii, static.n_contour),
+    }
