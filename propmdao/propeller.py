@@ -14,15 +14,25 @@ import numpy as np
 import numpy.typing as npt
 import tomli_w
 
+from propmdao import description_checks as checks
 from propmdao.catalog import catalog_names, propeller_file
-from propmdao.geometry.airfoil import AirfoilError
+from propmdao.description_checks import PropellerError
 from propmdao.geometry.airfoil_library import find_airfoil
 
 FloatArray = npt.NDArray[np.float64]
 
 
-class PropellerError(ValueError):
-    """A propeller's description is wrong or cannot be found; the message is one line."""
+__all__ = ["DISTRIBUTIONS", "Propeller", "PropellerError", "load_propeller"]
+
+#: Station arrays of a propeller, in the order of its file.
+DISTRIBUTIONS = (
+    "r_over_R",
+    "c_over_R",
+    "beta_deg",
+    "thickness_over_chord",
+    "sweep_over_R",
+    "rake_over_R",
+)
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
@@ -38,7 +48,7 @@ class Propeller:
     diameter : float
         Tip to tip [m].
     n_blades : int
-        Number of blades, one allowed.
+        Number of blades, at least 1.
     r_over_R : (n_stations,) array
         Stations, rising; the last is the tip, 1.
     c_over_R, beta_deg : (n_stations,) arrays
@@ -74,30 +84,34 @@ class Propeller:
     source: str = ""
 
     def __post_init__(self) -> None:
-        _set(self, "diameter", _number("diameter", self.diameter))
-        if not self.diameter > 0.0:
-            raise PropellerError(f"diameter must be positive [m]; it is {self.diameter:g}")
-        if not isinstance(self.n_blades, (int, np.integer)) or isinstance(self.n_blades, bool):
-            raise PropellerError(f"n_blades must be a whole number; it is {self.n_blades!r}")
-        if self.n_blades < 1:
-            raise PropellerError(f"n_blades must be at least 1; it is {self.n_blades}")
         for key in ("name", "source"):
             if not isinstance(getattr(self, key), str):
                 raise PropellerError(f"{key} must be text; it is {getattr(self, key)!r}")
+        # The attribute of a frozen dataclass can only be set this way.
+        object.__setattr__(self, "diameter", checks.number("diameter", self.diameter))
+        if not self.diameter > 0.0:
+            raise PropellerError(f"diameter must be positive [m]; it is {self.diameter}")
+        if not isinstance(self.n_blades, int | np.integer) or isinstance(self.n_blades, bool):
+            raise PropellerError(f"n_blades must be a whole number; it is {self.n_blades!r}")
+        if self.n_blades < 1:
+            raise PropellerError(f"n_blades must be at least 1; it is {self.n_blades}")
 
-        r = _distribution("r_over_R", self.r_over_R)
-        if r.size < 2:
-            raise PropellerError(f"r_over_R must hold at least 2 stations; it holds {r.size}")
-        _set(self, "r_over_R", r)
+        r = checks.stations(self.r_over_R)
+        object.__setattr__(self, "r_over_R", r)
         for key in DISTRIBUTIONS[1:]:
             value = getattr(self, key)
             if key == "thickness_over_chord" and value is None:
                 continue
-            if np.ndim(value) == 0 and key in ("sweep_over_R", "rake_over_R"):
-                value = np.full(r.size, _number(key, value))
-            _set(self, key, _distribution(key, value, r))
-        _check_ranges(self)
-        _set(self, "airfoils", _airfoils(self.airfoils))
+            if key in ("sweep_over_R", "rake_over_R") and np.ndim(value) == 0:
+                value = np.full(r.size, checks.number(key, value))
+            object.__setattr__(self, key, checks.distribution(key, value, r))
+        chord, beta, thickness = self.c_over_R, self.beta_deg, self.thickness_over_chord
+        checks.require("c_over_R", "be positive", chord > 0.0, chord, r)
+        checks.require("beta_deg", "be within -90..90", np.abs(beta) <= 90.0, beta, r)
+        if thickness is not None:
+            holds = (thickness > 0.0) & (thickness < 1.0)
+            checks.require("thickness_over_chord", "be above 0 and below 1", holds, thickness, r)
+        object.__setattr__(self, "airfoils", checks.airfoil_pairs(self.airfoils))
 
     def sections(self) -> tuple[FloatArray, FloatArray]:
         """Blend the airfoils to the stations, linearly in r/R.
@@ -164,24 +178,15 @@ class Propeller:
             lines.append(f"{key} = [{', '.join(repr(float(value)) for value in values)}]")
         tables = []
         for position, name in self.airfoils:
-            if name.endswith(".dat") and Path(name).absolute().is_relative_to(folder):
-                name = str(Path(name).absolute().relative_to(folder))
+            if name.endswith(".dat"):
+                absolute = Path(name).absolute()
+                inside = absolute.is_relative_to(folder)
+                name = str(absolute.relative_to(folder) if inside else absolute)
             entry = tomli_w.dumps({"airfoil": name}).rstrip()
-            tables.append(f"    {{ r_over_R = {position!r}, {entry} }},\n")
-        lines.append(f"airfoils = [\n{''.join(tables)}]")
+            tables.append(f"{{ r_over_R = {position}, {entry} }}")
+        lines.append(f"airfoils = [ {', '.join(tables)} ]")
         lines.append(tomli_w.dumps({"source": self.source}))
         Path(path).write_text("\n".join(lines), encoding="utf-8")
-
-
-#: Station arrays of a propeller, in the order of its file.
-DISTRIBUTIONS = (
-    "r_over_R",
-    "c_over_R",
-    "beta_deg",
-    "thickness_over_chord",
-    "sweep_over_R",
-    "rake_over_R",
-)
 
 
 def load_propeller(name_or_path: str | os.PathLike[str]) -> Propeller:
@@ -253,90 +258,3 @@ def _airfoil_tables(label: str, tables: Any, folder: Path | None) -> list[tuple[
             name = str(folder / name)
         pairs.append((table["r_over_R"], name))
     return pairs
-
-
-def _set(propeller: Propeller, key: str, value: object) -> None:
-    """Set a field of the frozen dataclass while it is being made."""
-    object.__setattr__(propeller, key, value)
-
-
-def _number(key: str, value: Any) -> float:
-    """Return a finite number or say what it is instead."""
-    try:
-        number = float(value)
-    except (TypeError, ValueError):
-        raise PropellerError(f"{key} must be a number; it is {value!r}") from None
-    if isinstance(value, (str, bool)) or not np.isfinite(number):
-        raise PropellerError(f"{key} must be a finite number; it is {value!r}")
-    return number
-
-
-def _distribution(key: str, values: Any, r: FloatArray | None = None) -> FloatArray:
-    """Return a read-only array of finite numbers, one for each station."""
-    try:
-        array = np.array(values, dtype=float)
-    except (TypeError, ValueError):
-        raise PropellerError(f"{key} must be a list of numbers; it is {values!r}") from None
-    if array.ndim != 1:
-        raise PropellerError(f"{key} must be a list of numbers; it is {values!r}")
-    if r is not None and array.size != r.size:
-        raise PropellerError(f"{key} has {array.size} values for {r.size} stations of r_over_R")
-    _require(key, "be finite", np.isfinite(array), array, r)
-    array.setflags(write=False)
-    return array
-
-
-def _require(
-    key: str, what: str, holds: npt.NDArray[np.bool_], values: FloatArray, r: FloatArray | None
-) -> None:
-    """Raise for the first station where a condition does not hold."""
-    if not holds.all():
-        i = int(np.argmin(holds))
-        where = "" if r is None else f" (r/R {r[i]:g})"
-        raise PropellerError(f"{key} must {what}; station {i + 1}{where} has {values[i]:g}")
-
-
-def _check_ranges(propeller: Propeller) -> None:
-    """Raise for the first value out of range."""
-    r, chord, beta = propeller.r_over_R, propeller.c_over_R, propeller.beta_deg
-    _require("r_over_R", "be above 0 and at most 1", (r > 0.0) & (r <= 1.0), r, None)
-    rising = np.append(True, np.diff(r) > 0.0)
-    _require("r_over_R", "rise from station to station", rising, r, None)
-    if r[-1] != 1.0:
-        # The diameter says where the tip is; a blade that ends before it contradicts itself.
-        raise PropellerError(f"r_over_R must end at the tip, 1; the last station has {r[-1]:g}")
-    _require("c_over_R", "be positive", chord > 0.0, chord, r)
-    _require("beta_deg", "be within -90..90", np.abs(beta) <= 90.0, beta, r)
-    thickness = propeller.thickness_over_chord
-    if thickness is not None:
-        holds = (thickness > 0.0) & (thickness < 1.0)
-        _require("thickness_over_chord", "be above 0 and below 1", holds, thickness, r)
-
-
-def _airfoils(pairs: Any) -> tuple[tuple[float, str], ...]:
-    """Return checked (r/R, airfoil) pairs, rising in r/R, each airfoil known."""
-    checked: list[tuple[float, str]] = []
-    for pair in pairs:
-        try:
-            position, name = pair
-        except (TypeError, ValueError):
-            raise PropellerError(f"airfoils must be (r/R, airfoil) pairs; got {pair!r}") from None
-        position = _number("r_over_R of an airfoil", position)
-        if not 0.0 <= position <= 1.0:
-            raise PropellerError(
-                f"r_over_R of airfoil {name!r} must be in 0..1; it is {position:g}"
-            )
-        if checked and position <= checked[-1][0]:
-            raise PropellerError(
-                f"airfoils must rise in r_over_R; {name!r} at {position:g} follows {checked[-1][0]:g}"
-            )
-        if not isinstance(name, str):
-            raise PropellerError(f"airfoil at r/R {position:g} must be a name; it is {name!r}")
-        try:
-            find_airfoil(name)
-        except AirfoilError as error:
-            raise PropellerError(str(error)) from error
-        checked.append((position, name))
-    if not checked:
-        raise PropellerError("airfoils must name at least one airfoil")
-    return tuple(checked)

@@ -103,7 +103,7 @@ def _slope_integral_weights(antiderivative: FloatArray) -> FloatArray:
     return -np.diff(per_interval, prepend=0.0, append=0.0)
 
 
-#: camber @ this = pi A1 = 2 * integral of (dz/dx) cos(angle), the lift at the ideal angle of attack.
+#: camber @ this = pi A1 = 2 * integral of (dz/dx) cos(angle), lift at the ideal angle of attack.
 DESIGN_LIFT_WEIGHTS = _slope_integral_weights(2.0 * np.sin(CHORD_ANGLE))
 #: camber @ this = zero-lift angle = integral of (dz/dx) (1 - cos(angle)) / pi [rad].
 ZERO_LIFT_WEIGHTS = _slope_integral_weights((CHORD_ANGLE - np.sin(CHORD_ANGLE)) / np.pi)

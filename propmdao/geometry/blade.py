@@ -70,7 +70,7 @@ class Blade:
         max_thickness = thickness.max(axis=1)
         given = propeller.thickness_over_chord
         return cls(
-            radius=jnp.asarray(0.5 * propeller.diameter),
+            radius=jnp.asarray(0.5 * propeller.diameter, dtype=float),
             chord_over_R=jnp.asarray(propeller.c_over_R),
             beta=jnp.asarray(np.radians(propeller.beta_deg)),
             sweep_over_R=jnp.asarray(propeller.sweep_over_R),

@@ -80,9 +80,9 @@ def read_coordinates(path: Path) -> Airfoil:
     Parameters
     ----------
     path : Path
-        Text file: a title line, then x and z over chord. Selig: trailing edge, upper side, leading
-        edge, lower side. Lednicer: the number of points of each side, then each side from the
-        leading edge.
+        Text file: a title line, which may be missing, then x and z over chord. Selig: trailing
+        edge, upper side, leading edge, lower side. Lednicer: the number of points of each side,
+        then each side from the leading edge.
 
     Returns
     -------
@@ -99,12 +99,14 @@ def read_coordinates(path: Path) -> Airfoil:
     except OSError as error:
         raise AirfoilError(f"airfoil file '{path}' cannot be read: {error.strerror}") from error
     rows = []
-    for number, line in enumerate(lines[1:], start=2):
+    for number, line in enumerate(lines, start=1):
         if not line.strip():
             continue
         try:
             x, z = (float(field) for field in line.split())
         except ValueError as error:
+            if number == 1:
+                continue
             raise AirfoilError(
                 f"airfoil file '{path}', line {number}: two numbers x z expected, not '{line}'"
             ) from error

@@ -26,7 +26,16 @@ def lattice_span(root_r_over_R: float, n_spanwise: int) -> npt.NDArray[np.float6
     -------
     (n_spanwise + 1,) array
         r/R from the root to 1.
+
+    Raises
+    ------
+    ValueError
+        If the root is not above 0 and below 1, or there is no panel.
     """
+    if not 0.0 < root_r_over_R < 1.0:
+        raise ValueError(f"root_r_over_R must be above 0 and below 1; got {root_r_over_R}")
+    if n_spanwise < 1:
+        raise ValueError(f"n_spanwise must be at least 1; got {n_spanwise}")
     angle = np.linspace(0.0, np.pi, n_spanwise + 1)
     spacing = 0.5 * (1.0 - np.cos(angle))
     return root_r_over_R + (1.0 - root_r_over_R) * spacing

@@ -38,13 +38,20 @@ def surface_span(root_r_over_R: float, n_span: int) -> npt.NDArray[np.float64]:
     root_r_over_R : float
         Where the blade begins.
     n_span : int
-        Number of contours (OpenVSP's Tess_U).
+        Number of contours (OpenVSP's Tess_U), at least 2.
 
     Returns
     -------
     (n_span,) array
         r/R from the root to 1.
+
+    Raises
+    ------
+    ValueError
+        If the root is not above 0 and below 1, or there are fewer than two contours.
     """
+    if n_span < 2:
+        raise ValueError(f"n_span must be at least 2; got {n_span}")
     return lattice_span(root_r_over_R, n_span - 1)
 
 

@@ -1,0 +1,70 @@
+"""The catalogue: every entry loads, says where it comes from and follows the published numbers."""
+
+from __future__ import annotations
+
+import tomllib
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from propmdao.catalog import airfoil_file, airfoil_names, catalog_names
+from propmdao.geometry.airfoil_library import find_airfoil
+from propmdao.propeller import load_propeller
+from propmdao.uiuc import read_uiuc_geometry
+
+
+def test_the_catalogue_holds_the_propellers_that_validation_needs() -> None:
+    assert {"apcsf_11x4.7", "apcsf_10x4.7", "apce_10x7"} <= set(catalog_names())
+    assert {"e63", "clarky"} <= set(airfoil_names())
+
+
+@pytest.mark.parametrize("name", catalog_names())
+def test_every_propeller_loads_under_its_own_name_and_names_its_source(name: str) -> None:
+    propeller = load_propeller(name)
+    assert propeller.name == name
+    assert "UIUC" in propeller.source
+
+
+@pytest.mark.parametrize("name", airfoil_names())
+def test_every_airfoil_loads_and_names_its_source(name: str) -> None:
+    airfoil = find_airfoil(name)
+    assert airfoil.source
+    assert airfoil.thickness[0] == airfoil.camber[0] == 0.0
+    assert tomllib.loads(airfoil_file(name).read_text(encoding="utf-8"))["name"]
+
+
+@pytest.mark.parametrize(
+    ("name", "diameter"), [("apcsf_11x4.7", 0.2794), ("apcsf_10x4.7", 0.254), ("apce_10x7", 0.254)]
+)
+def test_diameter_is_the_inches_in_the_name(name: str, diameter: float) -> None:
+    propeller = load_propeller(name)
+    assert propeller.diameter == diameter
+    assert propeller.n_blades == 2
+
+
+@pytest.mark.parametrize("name", ["apcsf_11x4.7", "apcsf_10x4.7"])
+def test_slow_flyers_go_from_e63_at_the_hub_to_clark_y_at_the_tip(name: str) -> None:
+    propeller = load_propeller(name)
+    assert propeller.airfoils == ((0.15, "e63"), (1.0, "clarky"))
+    assert propeller.thickness_over_chord is None
+
+
+def test_what_is_assumed_about_the_thin_electric_is_said() -> None:
+    source = load_propeller("apce_10x7").source
+    assert "ASSUMED, not published for this blade: sections" in source
+    assert "thickness from" in source
+
+
+@pytest.mark.parametrize("name", ["apcsf_11x4.7", "apcsf_10x4.7", "apce_10x7"])
+def test_chord_and_blade_angle_are_the_published_ones(name: str, reference_data: Path) -> None:
+    shipped = load_propeller(name)
+    published = read_uiuc_geometry(
+        reference_data / "uiuc" / f"{name}_geom.csv",
+        diameter=shipped.diameter,
+        n_blades=shipped.n_blades,
+        airfoils=shipped.airfoils,
+    )
+    np.testing.assert_array_equal(shipped.r_over_R, published.r_over_R)
+    np.testing.assert_array_equal(shipped.c_over_R, published.c_over_R)
+    np.testing.assert_array_equal(shipped.beta_deg, published.beta_deg)
