@@ -76,9 +76,12 @@ def test_types_are_shipped() -> None:
     assert (files("propmdao") / "py.typed").is_file()
 
 
-def test_studies_and_tests_are_not_installed(distribution: metadata.Distribution) -> None:
+def test_only_the_package_is_installed(distribution: metadata.Distribution) -> None:
+    # A checkout's own metadata lists its source; only an installed wheel shows what it holds.
+    if (Path(propmdao.__file__).parents[1] / "pyproject.toml").is_file():
+        pytest.skip("propmdao is not installed from a wheel")
     top_level = {file.parts[0] for file in distribution.files or ()}
-    assert not top_level & {"studies", "tests", "components", "benchmarks", "docs"}
+    assert {part for part in top_level if not part.endswith(".dist-info")} == {"..", "propmdao"}
 
 
 @pytest.mark.parametrize("group", OPENMDAO_NAMES)
