@@ -1,8 +1,10 @@
-"""Tonal noise of a steadily loaded rotor: Farassat's Formulation 1A, integrated over emission time."""
+"""Tonal noise of a steadily loaded rotor: Farassat's Formulation 1A over emission time."""
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from functools import partial
+from typing import NamedTuple
 
 import jax
 import jax.numpy as jnp
@@ -10,6 +12,8 @@ import numpy as np
 from jax import Array
 from jax.typing import ArrayLike
 
+from propmdao.acoustics.harmonic_sums import cos_sin, harmonic_sums
+from propmdao.geometry.surface import Panels
 from propmdao.records import PointLoads, record
 
 
@@ -17,13 +21,13 @@ from propmdao.records import PointLoads, record
 class Tones:
     """Complex pressure amplitudes of the blade-passage harmonics m = 1 ... n_harmonics.
 
-    The pressure at an observer is ``p(t) = 2 Re sum_m P_m exp(-2j pi f_m t)``; the mean pressure
-    (m = 0) is no sound and is left out.
+    The pressure at an observer is ``p(t) = 2 Re sum_m P_m exp(-2j pi f_m t)``, blade 1 being at
+    azimuth 0 at t = 0. The mean pressure (m = 0) is no sound and is left out.
 
     Attributes
     ----------
     frequency_hz : (n_harmonics,) array
-        Frequencies m B Omega / 2 pi [Hz].
+        Frequencies f_m = m B Omega / 2 pi [Hz].
     thickness, loading : (n_observers, n_harmonics) complex arrays
         Amplitudes P_m of the two noise sources [Pa].
     """
@@ -40,7 +44,7 @@ class Tones:
 
 @partial(jax.jit, static_argnames=("n_blades", "n_harmonics"))
 def tones(
-    panels,
+    panels: Panels,
     loads: PointLoads,
     n_blades: int,
     rotation_speed: ArrayLike,
@@ -50,27 +54,27 @@ def tones(
     observers: ArrayLike,
     n_harmonics: int,
 ) -> Tones:
-    r"""Tones of a rotor in steady axial flight, heard by observers that fly along with it.
+    """Tones of a rotor in steady axial flight, heard by observers that fly along with it.
 
-    Formulation 1A (Farassat, NASA TM-2007-214853, eqs. 17 and 18) for a rigid surface and loads that
-    are constant in the rotating frame, every near-field term kept. Because everything is periodic, the
-    harmonics follow from a Fourier integral over emission time, without a retarded-time root::
+    Formulation 1A for a rigid surface and loads that are constant in the rotating frame, every
+    near-field term kept. All is periodic, so the harmonics follow from a Fourier integral over
+    emission time, without a retarded-time root and without interpolation::
 
         P_m = (B / N) sum_j sum_elements p(tau_j) exp(1j m B Omega t(tau_j)) (dt / dtau)_j
 
-    with ``t = tau + d / c``. One blade is enough: the other blades double (triple, ...) the
-    multiples of B and cancel everything else.
+    over N azimuths of blade 1, with t = tau + d / c. The other blades add the same at the multiples
+    of B and cancel in between.
 
     Parameters
     ----------
     panels : Panels
-        Closed surface of blade 1: ``center`` (n, 3) [m], ``vector_area`` (n, 3) outward [m^2].
+        Closed surface of blade 1.
     loads : PointLoads
         Forces of blade 1 on the fluid.
     n_blades : int
         Number of equally spaced blades B (static).
     rotation_speed : float
-        Omega about +z [rad/s]. At zero there are no tones: all amplitudes are zero.
+        Omega about +z [rad/s]. At zero nothing is periodic: all amplitudes are zero.
     speed : float
         Speed V of the rotor and the observers along +z [m/s].
     density, sound_speed : float
@@ -87,40 +91,28 @@ def tones(
 
     Notes
     -----
-    The relative tip speed must be below the speed of sound; the caller checks that with
-    :func:`require_subsonic_tip`, since a traced function cannot raise.
+    The relative tip speed must be below the speed of sound: see `require_subsonic_tip`, for a
+    traced function cannot raise.
+
+    References
+    ----------
+    F. Farassat, Derivation of Formulations 1 and 1A of Farassat, NASA TM-2007-214853.
     """
-    omega, v, c = (jnp.asarray(s, float) for s in (rotation_speed, speed, sound_speed))
-    x, y, z = jnp.asarray(panels.center).T
-    sx, sy, sz = jnp.asarray(panels.vector_area).T
-    volume_rate = omega * (x * sy - y * sx) + v * sz
-    px, py, pz = jnp.asarray(loads.position).T
-    fx, fy, fz = jnp.asarray(loads.force).T
-    order = 2 * n_harmonics * n_blades
-    azimuth = 2 * np.pi * np.arange(order + 16) / (order + 16)
+    motion = _Motion(*(jnp.asarray(q, float) for q in (rotation_speed, speed, sound_speed)))
+    thickness = partial(_thickness, panels, jnp.asarray(density, float), motion)
+    loading = partial(_loading, loads, motion)
 
-    def one(observer):
-        # Rotating the observer back instead of the blade forward leaves every blade quantity constant.
-        ox = (observer[0] * np.cos(azimuth) + observer[1] * np.sin(azimuth))[:, None]
-        oy = (observer[1] * np.cos(azimuth) - observer[0] * np.sin(azimuth))[:, None]
-        oz = observer[2]
-        d, rz, mr, near = _geometry(x, y, z, ox, oy, oz, omega, v, c)
-        p = density * volume_rate * near / (d * (1 - mr)) ** 2
-        thickness = _harmonics(p / (1 - rz * v / c), d, omega / c, azimuth, n_blades, n_harmonics)
+    @jax.checkpoint  # the reverse derivative recomputes one observer at a time: megabytes, not GiB
+    def hear(observer: Array) -> tuple[Array, Array]:
+        return (
+            _fourier_integral(thickness, motion, n_blades, n_harmonics, observer),
+            _fourier_integral(loading, motion, n_blades, n_harmonics, observer),
+        )
 
-        d, rz, mr, near = _geometry(px, py, pz, ox, oy, oz, omega, v, c)
-        rx, ry = (ox - px) / d, (oy - py) / d
-        lr = fx * rx + fy * ry + fz * rz
-        lm = (omega * (fy * px - fx * py) + v * fz) / c
-        ldot_r = omega * (fx * ry - fy * rx)
-        p = (ldot_r * d / c + lr - lm) / (d**2 * (1 - mr)) + lr * near / (c * (d * (1 - mr)) ** 2)
-        loading = _harmonics(p / (1 - rz * v / c), d, omega / c, azimuth, n_blades, n_harmonics)
-        return thickness, loading
-
-    thickness, loading = jax.lax.map(one, jnp.asarray(observers, float))
-    frequency_hz = n_blades * omega / (2 * np.pi) * np.arange(1, n_harmonics + 1)
-    turning = omega != 0
-    return Tones(frequency_hz, jnp.where(turning, thickness, 0), jnp.where(turning, loading, 0))
+    amplitudes = jax.lax.map(hear, jnp.asarray(observers, float))
+    turning = motion.omega != 0
+    frequency_hz = n_blades * motion.omega / (2 * np.pi) * np.arange(1, n_harmonics + 1)
+    return Tones(frequency_hz, *(jnp.where(turning, p, 0.0) for p in amplitudes))
 
 
 def require_subsonic_tip(
@@ -150,25 +142,95 @@ def require_subsonic_tip(
         )
 
 
-def _geometry(x, y, z, ox, oy, oz, omega, v, c):
-    """Emission distance d, r_z, M_r and d Mdot_r + c (M_r - M^2)."""
-    dx, dy, dz = ox - x, oy - y, oz - z
-    mz = v / c
-    # The observer flies on while the sound travels: x(t) - y(tau) = D + (V d / c) e_z.
-    b2 = 1 - mz**2
-    d = (mz * dz + jnp.sqrt((mz * dz) ** 2 + b2 * (dx**2 + dy**2 + dz**2))) / b2
-    rz = dz / d + mz
-    mr = (omega / c) * (x * dy - y * dx) / d + mz * rz
-    m2 = (omega / c) ** 2 * (x**2 + y**2) + mz**2
-    d_mdot_r = -(omega**2) / c * (x * dx + y * dy)
-    return d, rz, mr, d_mdot_r + c * (mr - m2)
+class _Motion(NamedTuple):
+    omega: Array
+    v: Array
+    c: Array
 
 
-def _harmonics(p, d, k, azimuth, n_blades, n_harmonics):
-    first = jnp.exp(1j * n_blades * (azimuth[:, None] + k * d))
+class _Radiation(NamedTuple):
+    """One source and the direction r in which its sound leaves, in the turning frame."""
 
-    def step(phase, _):
-        return phase * first, jnp.sum(p * phase)
+    d: Array  # from the source at emission to the observer at reception
+    r: tuple[Array, Array, Array]
+    m_r: Array
+    d_mdot_r: Array  # d Mdot_r
+    m2: Array
+    dt_dtau: Array
 
-    _, sums = jax.lax.scan(step, first, None, length=n_harmonics)
-    return n_blades / (4 * np.pi * azimuth.size) * sums
+
+def _fourier_integral(
+    source: Callable[[Array, Array, Array], tuple[Array, Array]],
+    motion: _Motion,
+    n_blades: int,
+    n_harmonics: int,
+    observer: Array,
+) -> Array:
+    """Average ``4 pi p dt/dtau exp(1j n Omega t)`` over one turn and make it pressure."""
+    # The integrand holds harmonics up to n (1 + M) and, in the near field, some more.
+    n_azimuths = 2 * n_harmonics * n_blades + 16
+    azimuth = 2 * np.pi * np.arange(n_azimuths) / n_azimuths
+    # The observer turns back instead of the blade forward: every blade quantity stays constant.
+    x = observer[0] * np.cos(azimuth) + observer[1] * np.sin(azimuth)
+    y = observer[1] * np.cos(azimuth) - observer[0] * np.sin(azimuth)
+
+    @jax.checkpoint
+    def emit(position: tuple[Array, Array]) -> tuple[Array, Array, Array]:
+        strength, d = source(*position, observer[2])
+        return strength, *cos_sin(n_blades * motion.omega / motion.c * d)
+
+    strength, cosine, sine = jax.lax.map(emit, (x, y))
+    sums = harmonic_sums(strength, cosine, sine, n_harmonics)
+    turned = np.exp(1j * n_blades * np.outer(azimuth, np.arange(1, n_harmonics + 1)))
+    return n_blades / (4 * np.pi * n_azimuths) * jnp.sum(sums * turned, axis=0)
+
+
+def _thickness(
+    panels: Panels, density: Array, motion: _Motion, *observer: Array
+) -> tuple[Array, Array]:
+    """Strength 4 pi p dt/dtau of each panel and its distance d."""
+    # v_n dS of a rigid panel is constant, so that rho (vdot_n + v_ndot) / (d (1 - M_r)^2) is zero.
+    x, y, z = panels.center.T
+    sx, sy, sz = panels.vector_area.T
+    v_n = motion.omega * (x * sy - y * sx) + motion.v * sz
+    d, _, m_r, d_mdot_r, m2, dt_dtau = _radiation(x, y, z, motion, *observer)
+    p = density * v_n * (d_mdot_r + motion.c * (m_r - m2)) / (d**2 * (1 - m_r) ** 3)
+    return p * dt_dtau, d
+
+
+def _loading(loads: PointLoads, motion: _Motion, *observer: Array) -> tuple[Array, Array]:
+    """Strength 4 pi p dt/dtau of each point force and its distance d."""
+    omega, v, c = motion
+    x, y, z = loads.position.T
+    lx, ly, lz = loads.force.T
+    d, r, m_r, d_mdot_r, m2, dt_dtau = _radiation(x, y, z, motion, *observer)
+    l_r = lx * r[0] + ly * r[1] + lz * r[2]
+    l_m = (omega * (ly * x - lx * y) + v * lz) / c
+    ldot_r = omega * (lx * r[1] - ly * r[0])  # the force turns with the blade
+    p = (
+        ldot_r / (c * d * (1 - m_r) ** 2)
+        + (l_r - l_m) / (d**2 * (1 - m_r) ** 2)
+        + l_r * (d_mdot_r + c * (m_r - m2)) / (c * d**2 * (1 - m_r) ** 3)
+    )
+    return p * dt_dtau, d
+
+
+def _radiation(
+    x: Array, y: Array, z: Array, motion: _Motion, x_obs: Array, y_obs: Array, z_obs: Array
+) -> _Radiation:
+    omega, v, c = motion
+    dx, dy, dz = x_obs - x, y_obs - y, z_obs - z
+    # While the sound travels the observer flies on: d is the root of d = |D + (V d / c) e_z|.
+    m_z = v / c
+    beta2 = 1 - m_z**2
+    d = (m_z * dz + jnp.sqrt((m_z * dz) ** 2 + beta2 * (dx**2 + dy**2 + dz**2))) / beta2
+    r = dx / d, dy / d, dz / d + m_z
+    m_r = omega / c * (x * r[1] - y * r[0]) + m_z * r[2]
+    return _Radiation(
+        d,
+        r,
+        m_r,
+        d_mdot_r=-(omega**2) / c * (x * dx + y * dy),
+        m2=(omega / c) ** 2 * (x**2 + y**2) + m_z**2,
+        dt_dtau=(1 - m_r) / (1 - m_z * r[2]),
+    )
