@@ -1,0 +1,177 @@
+"""Levels of tones in decibels re 20 uPa, and the pressure they add up to.
+
+Amplitudes are complex P_m as `Tones` holds them, p(t) = 2 Re sum_m P_m exp(-2j pi f_m t), so that
+a tone has the mean square 2 |P_m|^2. Levels are finite and differentiable everywhere, because
+silence is -200 dB instead of minus infinity. That also hides what 64 bit leaves of the highest
+harmonics of a slow rotor: rounding errors of about 1e-16 of the fundamental.
+"""
+
+from __future__ import annotations
+
+import jax.numpy as jnp
+import numpy as np
+from jax import Array
+from jax.typing import ArrayLike
+from numpy.typing import NDArray
+
+REFERENCE_PRESSURE = 20e-6  # Pa, root mean square
+_SILENCE = 1e-20  # of the reference mean square: -200 dB
+
+
+def spl_db(amplitude: ArrayLike) -> Array:
+    """Sound pressure level of each tone.
+
+    Parameters
+    ----------
+    amplitude : (..., n_harmonics) complex array
+        Amplitudes P_m [Pa].
+
+    Returns
+    -------
+    (..., n_harmonics) array
+        Levels [dB re 20 uPa], at least -200.
+    """
+    return _decibel(_mean_square(amplitude))
+
+
+def oaspl_db(amplitude: ArrayLike) -> Array:
+    """Overall sound pressure level of all tones together.
+
+    Parameters
+    ----------
+    amplitude : (..., n_harmonics) complex array
+        Amplitudes P_m [Pa].
+
+    Returns
+    -------
+    (...,) array
+        Levels [dB re 20 uPa], at least -200.
+    """
+    return _decibel(jnp.sum(_mean_square(amplitude), axis=-1))
+
+
+def oaspl_dba(frequency_hz: ArrayLike, amplitude: ArrayLike) -> Array:
+    """A-weighted overall level of all tones together.
+
+    Parameters
+    ----------
+    frequency_hz : (n_harmonics,) array
+        Frequencies [Hz].
+    amplitude : (..., n_harmonics) complex array
+        Amplitudes P_m [Pa].
+
+    Returns
+    -------
+    (...,) array
+        Levels [dBA re 20 uPa], at least -200.
+    """
+    weighted = a_weighting(frequency_hz) ** 2 * _mean_square(amplitude)
+    return _decibel(jnp.sum(weighted, axis=-1))
+
+
+def a_weighting(frequency_hz: ArrayLike) -> Array:
+    """Factor by which A-weighting multiplies the pressure of a tone.
+
+    Parameters
+    ----------
+    frequency_hz : array
+        Frequencies [Hz], any shape; 0 at 0 Hz, 1 at 1 kHz.
+
+    Returns
+    -------
+    array
+        The same shape; ``20 log10`` of it is the weighting in dB.
+
+    References
+    ----------
+    IEC 61672-1:2013, annex E: the analytical expression and its four pole frequencies.
+    """
+    return _a_response(jnp.asarray(frequency_hz) ** 2) / _a_response(jnp.asarray(1e6))
+
+
+def third_octave(
+    frequency_hz: ArrayLike, amplitude: ArrayLike
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Third-octave band levels of tones; not traceable by JAX, the bands depend on the values.
+
+    Parameters
+    ----------
+    frequency_hz : (n_harmonics,) array
+        Frequencies [Hz].
+    amplitude : (..., n_harmonics) complex array
+        Amplitudes P_m [Pa].
+
+    Returns
+    -------
+    center_hz : (n_bands,) array
+        Exact mid-band frequencies 1000 * 10**(k/10) of the bands that hold a tone [Hz]; no band
+        where nothing turns.
+    level_db : (..., n_bands) array
+        Band levels [dB re 20 uPa], at least -200.
+
+    References
+    ----------
+    IEC 61260-1:2014: base-ten mid-band and band-edge frequencies.
+    """
+    frequency, mean_square = np.asarray(frequency_hz), np.asarray(_mean_square(amplitude))
+    heard = frequency > 0
+    index = np.floor(10 * np.log10(frequency[heard] / 1000) + 0.5)
+    bands, band_of_tone = np.unique(index, return_inverse=True)
+    membership = np.eye(bands.size)[band_of_tone]
+    return 1000 * 10 ** (bands / 10), np.asarray(_decibel(mean_square[..., heard] @ membership))
+
+
+def pressure_history(
+    frequency_hz: ArrayLike, amplitude: ArrayLike, n_times: int
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Pressure over one blade passage, starting with blade 1 at azimuth 0.
+
+    Parameters
+    ----------
+    frequency_hz : (n_harmonics,) array
+        Frequencies, multiples of the first [Hz].
+    amplitude : (..., n_harmonics) complex array
+        Amplitudes P_m [Pa].
+    n_times : int
+        Number of equally spaced times, more than 2 n_harmonics.
+
+    Returns
+    -------
+    time : (n_times,) array
+        From 0 up to, not including, the passage 1 / f_1 [s].
+    pressure : (..., n_times) array
+        Pressure without its mean [Pa].
+
+    Raises
+    ------
+    ValueError
+        If there are too few times for the harmonics, or the rotor stands still.
+    """
+    passage_hz = float(np.asarray(frequency_hz)[0])
+    amplitude = np.asarray(amplitude)
+    n_harmonics = amplitude.shape[-1]
+    if n_times <= 2 * n_harmonics:
+        raise ValueError(
+            f"n_times must be more than twice the {n_harmonics} harmonics; got {n_times}"
+        )
+    if not passage_hz > 0:
+        raise ValueError(f"the blade passage frequency must be positive [Hz]; got {passage_hz:g}")
+    spectrum = np.zeros((*amplitude.shape[:-1], n_times // 2 + 1), complex)
+    # irfft sums exp(+1j ...), the tones exp(-1j ...)
+    spectrum[..., 1 : n_harmonics + 1] = n_times * np.conj(amplitude)
+    return np.arange(n_times) / (n_times * passage_hz), np.fft.irfft(spectrum, n_times)
+
+
+def _mean_square(amplitude: ArrayLike) -> Array:
+    p = jnp.asarray(amplitude)
+    return 2 * (p.real**2 + p.imag**2)  # abs() has no derivative at silence
+
+
+def _decibel(mean_square: ArrayLike) -> Array:
+    return 10 * jnp.log10(jnp.asarray(mean_square) / REFERENCE_PRESSURE**2 + _SILENCE)
+
+
+def _a_response(f2: Array) -> Array:
+    poles = 20.598997, 107.65265, 737.86223, 12194.217  # Hz
+    low, mid1, mid2, high = (f2 + pole**2 for pole in poles)
+    return f2**2 / (low * jnp.sqrt(mid1 * mid2) * high)
