@@ -26,12 +26,12 @@ from jax.interpreters import ad, batching, mlir
 
 @jax.custom_jvp
 def cos_sin(angle: Array) -> tuple[Array, Array]:
-    """Cosine and sine, each to 4e-16 plus the rounding of the angle itself.
+    """Cosine and sine, each to 4e-16.
 
     Parameters
     ----------
     angle : array
-        Any shape [rad], below 1e5 in size.
+        Any shape [rad], below 1e6 in size.
 
     Returns
     -------
@@ -39,8 +39,8 @@ def cos_sin(angle: Array) -> tuple[Array, Array]:
         The same shape.
     """
     turn = jnp.round(angle * (2 / np.pi))
-    # pi/2 in two parts (Cody and Waite), so that the remainder keeps its digits
-    x = (angle - turn * (np.pi / 2)) - turn * 6.123233995736766e-17
+    # pi/2 in two parts (Cody and Waite): the first has 33 bits, so that its multiples are exact
+    x = (angle - turn * 1.57079632673412561417) - turn * 6.07710050650619224932e-11
     x2 = x * x
     cosine, sine = jnp.zeros_like(x), jnp.zeros_like(x)
     for k in range(8, -1, -1):  # Taylor series; the next term at pi/4 is 2e-18
