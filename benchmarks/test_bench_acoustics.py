@@ -1,0 +1,52 @@
+"""How long the tones of a full surface take: 5,200 panels, 10 harmonics, one and nine observers."""
+
+from __future__ import annotations
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+import pytest
+
+from propmdao.acoustics import arc, tones
+from propmdao.geometry.blade import Blade, span_interpolation
+from propmdao.geometry.lattice import lattice_nodes, lattice_span
+from propmdao.geometry.surface import surface_nodes, surface_panels, surface_span
+from propmdao.propeller import load_propeller
+from propmdao.records import PointLoads
+
+
+@pytest.fixture(scope="module", params=[1, 9], ids="observers-{}".format)
+def case(request):
+    """Return (panels, loads, observers): what `tones` is differentiated by in a design."""
+    propeller = load_propeller("apcsf_11x4.7")
+    blade = Blade.from_propeller(propeller)
+    root = propeller.r_over_R[0]
+    surface = span_interpolation(propeller.r_over_R, surface_span(root, 80))
+    lattice = span_interpolation(propeller.r_over_R, lattice_span(root, 24))
+    position = lattice_nodes(blade, lattice, 8).reshape(-1, 3)
+    loads = PointLoads(position, jnp.ones_like(position))
+    elevation_deg = [-45.0] if request.param == 1 else np.linspace(-45.0, 45.0, request.param)
+    panels = surface_panels(surface_nodes(blade, surface, 65))
+    return panels, loads, jnp.asarray(arc(1.905, elevation_deg))
+
+
+def hear(panels, loads, observers):
+    return tones(panels, loads, 2, 440.0, 8.0, 1.225, 340.294, observers, 10).total
+
+
+def timed(benchmark, function, *arguments):
+    compiled = jax.jit(function).lower(*arguments).compile()
+    benchmark(lambda: jax.block_until_ready(compiled(*arguments)))
+
+
+def test_tones(benchmark, case):
+    timed(benchmark, hear, *case)
+
+
+def test_forward_derivative(benchmark, case):
+    timed(benchmark, lambda *at: jax.jvp(hear, at, at), *case)
+
+
+def test_reverse_derivative(benchmark, case):
+    weights = jnp.ones((len(case[2]), 10), complex)
+    timed(benchmark, lambda *at: jax.vjp(hear, *at)[1](weights), *case)
