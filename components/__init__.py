@@ -1,7 +1,17 @@
 """OpenMDAO components, the group that connects them, and drivers."""
 
+from propmdao.components.acoustics_comp import AcousticsComp
+from propmdao.components.aerodynamics_comp import AerodynamicsComp
 from propmdao.components.constrained_search import Generation
 from propmdao.components.differential_evolution_driver import DifferentialEvolutionDriver
 from propmdao.components.geometry_comp import GeometryComp
+from propmdao.components.rotation_speed_comp import RotationSpeedComp
 
-__all__ = ["DifferentialEvolutionDriver", "Generation", "GeometryComp"]
+__all__ = [
+    "AcousticsComp",
+    "AerodynamicsComp",
+    "DifferentialEvolutionDriver",
+    "Generation",
+    "GeometryComp",
+    "RotationSpeedComp",
+]

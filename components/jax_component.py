@@ -30,7 +30,7 @@ class JaxComponent(om.ExplicitComponent):
     static: Hashable = None
 
     def compute(self, inputs: Any, outputs: Any) -> None:
-        values = _evaluate(self.function, self.static, self.constants, _arrays(inputs))
+        values = _evaluate(self.function, self.static, self.constants, arrays(inputs))
         self.check(inputs, values)
         for name in outputs:
             outputs[name] = values[name]
@@ -47,19 +47,41 @@ class JaxComponent(om.ExplicitComponent):
         """
 
     def compute_jacvec_product(self, inputs: Any, d_inputs: Any, d_outputs: Any, mode: str) -> None:
-        at = self.function, self.static, self.constants, _arrays(inputs)
+        # Every output always takes part, if only with zeros: compiling for each combination that
+        # OpenMDAO asks for would take far longer than the products.
+        outputs = self.get_io_metadata(iotypes="output", metadata_keys=["shape"])
+        at = self.function, self.static, self.constants, arrays(inputs)
         if mode == "fwd":
-            seeds = {n: d_inputs[n] if n in d_inputs else np.zeros_like(inputs[n]) for n in inputs}
-            for name, product in _forward(*at, tuple(d_outputs), seeds).items():
-                d_outputs[name] += product
+            seeds = {
+                n: np.array(d_inputs[n]) if n in d_inputs else np.zeros_like(inputs[n])
+                for n in inputs
+            }
+            products = _forward(*at, tuple(outputs), seeds)
+            for name in d_outputs:
+                d_outputs[name] += products[name]
         else:
-            products = _reverse(*at, {name: np.array(d_outputs[name]) for name in d_outputs})
+            seeds = {
+                name: np.array(d_outputs[name]) if name in d_outputs else np.zeros(meta["shape"])
+                for name, meta in outputs.items()
+            }
+            products = _reverse(*at, seeds)
             for name in d_inputs:
                 d_inputs[name] += products[name]
 
 
-def _arrays(vector: Any) -> dict[str, np.ndarray]:
-    """Copy: OpenMDAO's views change while JAX may still read them."""
+def arrays(vector: Any) -> dict[str, Any]:
+    """Copy a vector's values, because its views change while JAX may still read them.
+
+    Parameters
+    ----------
+    vector : mapping
+        OpenMDAO vector.
+
+    Returns
+    -------
+    dict of arrays
+        Values by name.
+    """
     return {name: np.array(vector[name]) for name in vector}
 
 

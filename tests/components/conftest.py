@@ -1,10 +1,13 @@
-"""A one-component Problem around a Python function, for tests of the driver."""
+"""What tests of components share: small Problems, a small blade, a check of derivatives."""
 
 import numpy as np
 import openmdao.api as om
 import pytest
+from numpy.testing import assert_allclose
 
-from propmdao.components import DifferentialEvolutionDriver
+from propmdao.components import DifferentialEvolutionDriver, GeometryComp
+from propmdao.fidelity import Fidelity
+from propmdao.propeller import load_propeller
 
 
 class Recorded(om.ExplicitComponent):
@@ -48,3 +51,55 @@ def problem():
     ``function(x)`` returns objective and constraint; ``prob.model.comp.designs`` lists every x.
     """
     return _problem
+
+
+@pytest.fixture(scope="session")
+def small():
+    """Meshes that are too coarse to mean much and quick to differentiate."""
+    return Fidelity(n_chordwise=2, n_spanwise=4, n_contour=5, n_surface_span=4, n_harmonics=2)
+
+
+@pytest.fixture(scope="session")
+def propeller():
+    return load_propeller("apcsf_11x4.7")
+
+
+@pytest.fixture(scope="session")
+def meshes(propeller, small):
+    """Problem that holds ``lattice_nodes`` and ``surface_nodes`` of the small blade."""
+    prob = om.Problem(reports=False)
+    prob.model.add_subsystem(
+        "comp", GeometryComp(propeller=propeller, fidelity=small), promotes=["*"]
+    )
+    prob.setup()
+    prob.run_model()
+    return prob
+
+
+@pytest.fixture(scope="session")
+def assert_partials():
+    """``assert_partials(prob, {input: step}, tolerance)`` for ``prob.model.comp``.
+
+    Forward and reverse products against central differences over the given absolute steps, at
+    which they have converged; the error of a block of derivatives is relative to its largest.
+    """
+
+    def check(prob, steps, tolerance):
+        for name, step in steps.items():
+            prob.model.comp.set_check_partial_options(
+                name, method="fd", form="central", step=step, step_calc="abs"
+            )
+        (blocks,) = prob.check_partials(out_stream=None).values()
+        assert {of_wrt[1] for of_wrt in blocks} == set(steps)
+        for of_wrt, block in blocks.items():
+            largest = np.abs(block["J_fd"]).max()
+            for mode in ("J_fwd", "J_rev"):
+                assert_allclose(
+                    block[mode],
+                    block["J_fd"],
+                    rtol=0.0,
+                    atol=tolerance * max(largest, 1e-3),
+                    err_msg=f"{mode} of {of_wrt}",
+                )
+
+    return check

@@ -1,0 +1,137 @@
+"""Blade surface and loads to tones and levels at observers."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import openmdao.api as om
+
+from propmdao.acoustics.formulation1a import require_subsonic_tip, tones
+from propmdao.acoustics.levels import oaspl_db, oaspl_dba, spl_db
+from propmdao.components.jax_component import Arrays, JaxComponent
+from propmdao.fidelity import Fidelity
+from propmdao.geometry.surface import surface_panels
+from propmdao.records import PointLoads
+
+
+class AcousticsComp(JaxComponent):
+    """Tonal noise by Formulation 1A, at observers that fly along with the rotor.
+
+    Usable alone, with blade loads from elsewhere.
+
+    Inputs
+    ------
+    surface_nodes : (n_contour, n_surface_span, 3) array
+        Points of the section contours of blade 1, ``m``.
+    load_position, load_force : (n_loads, 3) arrays
+        Steady point forces of blade 1 ON THE FLUID, ``m``, ``N``.
+    rpm : float
+        Rotation speed, ``rpm``.
+    speed : float
+        Axial flight speed, ``m/s``.
+    density, sound_speed : float
+        Of the undisturbed air, ``kg/m**3``, ``m/s``.
+    observer_position : (n_observers, 3) array
+        From the rotor centre, +z toward thrust, ``m``.
+
+    Outputs
+    -------
+    spl_bpf_db : (n_observers,) array
+        Level of the blade-passage tone, dB re 20 uPa (OpenMDAO knows no decibel).
+    oaspl_db : (n_observers,) array
+        Overall level of all tones, dB re 20 uPa.
+    oaspl_thickness_db, oaspl_loading_db : (n_observers,) arrays
+        Overall levels of the two sources alone.
+    oaspl_dba : (n_observers,) array
+        A-weighted overall level of the tones, dBA; broadband noise is not in it.
+    mean_square_pressure : (n_observers, n_harmonics) array
+        Of each tone, ``Pa**2``; add these for rotors that turn independently.
+    frequency : (n_harmonics,) array
+        Of the tones, ``Hz``.
+
+    Options
+    -------
+    n_blades : int
+        Number of equally spaced blades.
+    n_loads : int
+        Number of point forces.
+    observers : (n_observers, 3) array
+        Initial `observer_position` [m]; `propmdao.acoustics.observers.arc` makes one.
+    fidelity : Fidelity
+        Size of the surface mesh and number of harmonics.
+
+    Raises
+    ------
+    om.AnalysisError
+        When the blade tip is not slower than sound.
+    """
+
+    def initialize(self) -> None:
+        self.options.declare("n_blades", types=int, desc="Number of blades.")
+        self.options.declare("n_loads", types=int, desc="Number of point forces.")
+        self.options.declare("observers", types=np.ndarray, desc="Initial positions [m].")
+        self.options.declare("fidelity", Fidelity(), types=Fidelity, desc="Mesh and harmonics.")
+
+    def setup(self) -> None:
+        fidelity, observers = self.options["fidelity"], self.options["observers"]
+        n_observers, n_loads = len(observers), self.options["n_loads"]
+        surface = (fidelity.n_contour, fidelity.n_surface_span, 3)
+        self.add_input("surface_nodes", shape=surface, units="m")
+        self.add_input("load_position", shape=(n_loads, 3), units="m")
+        self.add_input("load_force", shape=(n_loads, 3), units="N", desc="Force on the fluid.")
+        self.add_input("rpm", val=4000.0, units="rpm")
+        self.add_input("speed", val=0.0, units="m/s")
+        self.add_input("density", val=1.225, units="kg/m**3")
+        self.add_input("sound_speed", val=340.294, units="m/s")
+        self.add_input("observer_position", val=observers, units="m")
+        for name, desc in (
+            ("spl_bpf_db", "Level of the blade-passage tone."),
+            ("oaspl_db", "Overall level of the tones."),
+            ("oaspl_thickness_db", "Overall level of thickness noise alone."),
+            ("oaspl_loading_db", "Overall level of loading noise alone."),
+            ("oaspl_dba", "A-weighted overall level of the tones."),
+        ):
+            self.add_output(name, shape=n_observers, desc=desc)
+        self.add_output(
+            "mean_square_pressure", shape=(n_observers, fidelity.n_harmonics), units="Pa**2"
+        )
+        self.add_output("frequency", shape=fidelity.n_harmonics, units="Hz")
+        self.function = _levels
+        self.static = (self.options["n_blades"], fidelity.n_harmonics)
+
+    def check(self, inputs: Any, values: Any) -> None:
+        x, y, _ = np.moveaxis(np.asarray(inputs["surface_nodes"]), -1, 0)
+        rpm, speed, sound = (float(inputs[n][0]) for n in ("rpm", "speed", "sound_speed"))
+        try:
+            require_subsonic_tip(float(np.hypot(x, y).max()), rpm * np.pi / 30.0, speed, sound)
+        except ValueError as error:
+            raise om.AnalysisError(str(error)) from error
+
+
+def _levels(inputs: Arrays, constants: None, static: tuple[int, int]) -> Arrays:
+    n_blades, n_harmonics = static
+    rpm, speed, density, sound = (
+        inputs[name][0] for name in ("rpm", "speed", "density", "sound_speed")
+    )
+    heard = tones(
+        surface_panels(inputs["surface_nodes"]),
+        PointLoads(inputs["load_position"], inputs["load_force"]),
+        n_blades,
+        rpm * (np.pi / 30.0),
+        speed,
+        density,
+        sound,
+        inputs["observer_position"],
+        n_harmonics,
+    )
+    return {
+        "spl_bpf_db": spl_db(heard.total)[:, 0],
+        "oaspl_db": oaspl_db(heard.total),
+        "oaspl_thickness_db": oaspl_db(heard.thickness),
+        "oaspl_loading_db": oaspl_db(heard.loading),
+        "oaspl_dba": oaspl_dba(heard.frequency_hz, heard.total),
+        # abs() has no derivative where it is silent
+        "mean_square_pressure": 2.0 * (heard.total.real**2 + heard.total.imag**2),
+        "frequency": heard.frequency_hz,
+    }

@@ -1,0 +1,125 @@
+"""Rotation speed at which a blade gives the thrust required."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import jax.numpy as jnp
+import numpy as np
+import openmdao.api as om
+
+from propmdao.aerodynamics.trim import (
+    TrimError,
+    rotation_speed_by_interpolation,
+    rotation_speed_for_thrust,
+    solve_rotation_speed,
+)
+from propmdao.components.jax_component import Arrays, JaxComponent, arrays
+from propmdao.fidelity import Fidelity
+
+METHODS = ("solve", "two_point")
+_RAD_PER_S = np.pi / 30.0
+
+
+class RotationSpeedComp(JaxComponent):
+    """Trim to a thrust, converged from any blade inside the bounds.
+
+    Inputs
+    ------
+    lattice_nodes : (n_chordwise + 1, n_spanwise + 1, 3) array
+        Corner points of the lattice of blade 1, ``m``.
+    speed : float
+        Axial flight speed, 0 is hover, ``m/s``.
+    density : float
+        Air density, ``kg/m**3``.
+    thrust_required : float
+        Thrust of all blades, ``N``.
+
+    Outputs
+    -------
+    rpm : float
+        Rotation speed, ``rpm``.
+
+    Options
+    -------
+    n_blades : int
+        Number of equally spaced blades.
+    radius : float
+        Tip radius [m].
+    fidelity : Fidelity
+        Numbers of panels.
+    rpm_bounds : (float, float)
+        Lowest and highest rotation speed [rpm].
+    method : str
+        ``"solve"``: the thrust is the required one. ``"two_point"``: the thrust is computed at the
+        two bounds and taken as linear in between, the rule of the thesis; it misses the thrust
+        required by some per cent and is there to show by how much.
+
+    Raises
+    ------
+    om.AnalysisError
+        When the thrust is out of reach between the bounds, with the thrust at both.
+    """
+
+    def initialize(self) -> None:
+        self.options.declare("n_blades", types=int, desc="Number of blades.")
+        self.options.declare("radius", types=float, desc="Tip radius [m].")
+        self.options.declare("fidelity", Fidelity(), types=Fidelity, desc="Numbers of panels.")
+        self.options.declare("rpm_bounds", types=tuple, desc="Lowest and highest rpm.")
+        self.options.declare("method", "solve", values=METHODS, desc="How the rpm is found.")
+
+    def setup(self) -> None:
+        low, high = self.options["rpm_bounds"]
+        if not 0.0 < low < high:
+            raise ValueError(f"rpm_bounds must be positive and rising; they are {low:g}, {high:g}")
+        fidelity = self.options["fidelity"]
+        nodes = (fidelity.n_chordwise + 1, fidelity.n_spanwise + 1, 3)
+        self.add_input("lattice_nodes", shape=nodes, units="m")
+        self.add_input("speed", val=0.0, units="m/s")
+        self.add_input("density", val=1.225, units="kg/m**3")
+        self.add_input("thrust_required", val=1.0, units="N")
+        self.add_output("rpm", val=np.sqrt(low * high), units="rpm")
+
+        self.function = _solved if self.options["method"] == "solve" else _interpolated
+        self.static = self.options["n_blades"]
+        self.constants = jnp.array([self.options["radius"], low * _RAD_PER_S, high * _RAD_PER_S])
+
+    def compute(self, inputs: Any, outputs: Any) -> None:
+        if self.options["method"] == "two_point":
+            super().compute(inputs, outputs)
+            return
+        nodes, n_blades, radius, speed, density, thrust, low, high = _arguments(
+            arrays(inputs), self.constants, self.options["n_blades"]
+        )
+        try:
+            omega = rotation_speed_for_thrust(
+                nodes, n_blades, radius, speed, density, thrust, (low, high)
+            )
+        except TrimError as error:
+            raise om.AnalysisError(str(error)) from error
+        outputs["rpm"] = omega / _RAD_PER_S
+
+    def check(self, inputs: Any, values: Any) -> None:
+        low, high = self.options["rpm_bounds"]
+        rpm = float(values["rpm"][0])
+        if not low <= rpm <= high:
+            raise om.AnalysisError(
+                f"thrust {inputs['thrust_required'][0]:g} N needs {rpm:g} rpm by linear "
+                f"interpolation, outside {low:g}..{high:g} rpm"
+            )
+
+
+def _arguments(inputs: Arrays, constants: Any, n_blades: int) -> tuple[Any, ...]:
+    scalars = (inputs[name][0] for name in ("speed", "density", "thrust_required"))
+    radius, low, high = constants
+    return inputs["lattice_nodes"], n_blades, radius, *scalars, low, high
+
+
+def _solved(inputs: Arrays, constants: Any, static: int) -> Arrays:
+    omega, _, _ = solve_rotation_speed(*_arguments(inputs, constants, static))
+    return {"rpm": omega[None] / _RAD_PER_S}
+
+
+def _interpolated(inputs: Arrays, constants: Any, static: int) -> Arrays:
+    omega = rotation_speed_by_interpolation(*_arguments(inputs, constants, static))
+    return {"rpm": omega[None] / _RAD_PER_S}

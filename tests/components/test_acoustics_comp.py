@@ -1,0 +1,81 @@
+"""AcousticsComp: the levels of the physics, their derivatives, a supersonic tip."""
+
+import numpy as np
+import openmdao.api as om
+import pytest
+from numpy.testing import assert_allclose
+
+from propmdao.acoustics import levels
+from propmdao.acoustics.formulation1a import tones
+from propmdao.acoustics.observers import arc
+from propmdao.components import AcousticsComp
+from propmdao.geometry.surface import surface_panels
+from propmdao.records import PointLoads
+
+OBSERVERS = arc(1.9, [-45.0, 0.0])
+# along the quarter-chord line of a blade that gives some 1.4 N for 0.02 N m
+POSITION = np.array([[0.07, 0.0, 0.0], [0.10, -0.001, 0.001], [0.13, -0.002, 0.001]])
+FORCE = np.array([[0.02, -0.08, -0.15], [0.01, -0.12, -0.3], [0.01, -0.1, -0.25]])
+
+
+@pytest.fixture
+def problem(meshes, small):
+    prob = om.Problem(reports=False)
+    prob.model.add_subsystem(
+        "comp",
+        AcousticsComp(n_blades=2, n_loads=3, observers=OBSERVERS, fidelity=small),
+        promotes=["*"],
+    )
+    prob.setup()
+    prob.set_val("surface_nodes", meshes.get_val("surface_nodes"))
+    prob.set_val("load_position", POSITION)
+    prob.set_val("load_force", FORCE)
+    prob.set_val("rpm", 6000.0)
+    prob.set_val("speed", 8.0)
+    return prob
+
+
+def test_levels_are_those_of_formulation_1a(problem):
+    problem.run_model()
+    panels = surface_panels(problem.get_val("surface_nodes"))
+    omega = 6000.0 * np.pi / 30.0
+    heard = tones(panels, PointLoads(POSITION, FORCE), 2, omega, 8.0, 1.225, 340.294, OBSERVERS, 2)
+    assert_allclose(problem.get_val("spl_bpf_db"), levels.spl_db(heard.total)[:, 0])
+    assert_allclose(problem.get_val("oaspl_db"), levels.oaspl_db(heard.total))
+    assert_allclose(problem.get_val("oaspl_thickness_db"), levels.oaspl_db(heard.thickness))
+    assert_allclose(problem.get_val("oaspl_loading_db"), levels.oaspl_db(heard.loading))
+    assert_allclose(problem.get_val("oaspl_dba"), levels.oaspl_dba(heard.frequency_hz, heard.total))
+    assert_allclose(problem.get_val("frequency"), [200.0, 400.0])
+    total = problem.get_val("mean_square_pressure").sum(axis=1)
+    assert_allclose(10.0 * np.log10(total / 20e-6**2), problem.get_val("oaspl_db"))
+    assert (problem.get_val("oaspl_db") > 20.0).all()
+
+
+def test_acoustic_partials(problem, assert_partials):
+    problem.run_model()
+    steps = {
+        "surface_nodes": 1e-6,
+        "load_position": 1e-6,
+        "load_force": 1e-5,
+        "rpm": 1.0,
+        "speed": 1e-3,
+        "density": 1e-4,
+        "sound_speed": 0.1,
+        "observer_position": 1e-4,
+    }
+    assert_partials(problem, steps, 1e-5)
+
+
+def test_supersonic_tip_is_a_failed_analysis(problem):
+    problem.set_val("rpm", 24000.0)
+    with pytest.raises(om.AnalysisError, match="relative tip Mach number must be below 1"):
+        problem.run_model()
+
+
+def test_observers_can_be_moved(problem):
+    problem.run_model()
+    near = problem.get_val("oaspl_db").copy()
+    problem.set_val("observer_position", 2.0 * OBSERVERS)
+    problem.run_model()
+    # towards the far field a doubled distance costs 6.02 dB
+    assert_allclose(near - problem.get_val("oaspl_db"), 6.02, atol=0.3)

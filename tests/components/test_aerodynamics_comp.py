@@ -1,0 +1,139 @@
+"""AerodynamicsComp and RotationSpeedComp: values of the physics, derivatives, failures."""
+
+import numpy as np
+import openmdao.api as om
+import pytest
+from numpy.testing import assert_allclose
+
+from propmdao.aerodynamics.steady import solve_steady
+from propmdao.components import AerodynamicsComp, RotationSpeedComp
+
+STEPS = {"lattice_nodes": 1e-6, "speed": 1e-3, "density": 1e-4}
+
+
+@pytest.fixture(scope="module")
+def nodes(meshes):
+    return meshes.get_val("lattice_nodes")
+
+
+@pytest.fixture(scope="module")
+def rotor(small):
+    return {"n_blades": 2, "radius": 0.1397, "fidelity": small}
+
+
+def problem(comp, **values):
+    prob = om.Problem(reports=False)
+    prob.model.add_subsystem("comp", comp, promotes=["*"])
+    prob.setup()
+    for name, value in values.items():
+        prob.set_val(name, value)
+    return prob
+
+
+# --- aerodynamics -------------------------------------------------------------------------------
+
+
+def test_values_are_those_of_the_steady_lattice(nodes, rotor):
+    prob = problem(AerodynamicsComp(**rotor), lattice_nodes=nodes, rpm=4200.0, speed=8.0)
+    prob.run_model()
+    omega = 4200.0 * np.pi / 30.0
+    solution = solve_steady(nodes, 2, 0.1397, omega, 8.0, 1.225)
+    thrust, torque = float(solution.thrust), float(solution.torque)
+    assert thrust > 0.5
+    assert_allclose(prob.get_val("thrust"), thrust, rtol=1e-12)
+    assert_allclose(prob.get_val("torque"), torque, rtol=1e-12)
+    assert_allclose(prob.get_val("shaft_power"), torque * omega, rtol=1e-12)
+    assert_allclose(prob.get_val("efficiency"), thrust * 8.0 / (torque * omega), rtol=1e-12)
+    assert_allclose(prob.get_val("J"), 8.0 / (70.0 * 0.2794), rtol=1e-12)
+    assert_allclose(prob.get_val("CT"), thrust / (1.225 * 70.0**2 * 0.2794**4), rtol=1e-12)
+    assert_allclose(prob.get_val("CP"), 2.0 * np.pi * prob.get_val("CQ"), rtol=1e-12)
+    # the fluid gets what the blade does not: -1/2 of the thrust from each of two blades
+    assert_allclose(prob.get_val("load_force").sum(axis=0)[2], -thrust / 2, rtol=1e-12)
+    assert prob.get_val("circulation").shape == (2, 4)
+
+
+@pytest.mark.parametrize("speed", [0.0, 8.0])
+def test_aerodynamic_partials(nodes, rotor, assert_partials, speed):
+    prob = problem(AerodynamicsComp(**rotor), lattice_nodes=nodes, rpm=4200.0, speed=speed)
+    prob.run_model()
+    assert_partials(prob, {**STEPS, "rpm": 0.1}, 1e-5)
+
+
+def test_rpm_zero_gives_zero_loads(nodes, rotor):
+    prob = problem(AerodynamicsComp(**rotor), lattice_nodes=nodes, rpm=0.0, speed=8.0)
+    prob.run_model()
+    for name in ("thrust", "torque", "shaft_power", "efficiency", "CT", "load_force"):
+        assert_allclose(prob.get_val(name), 0.0)
+
+
+def test_windmill_beyond_momentum_theory_is_a_failed_analysis(nodes, rotor):
+    many_blades = AerodynamicsComp(**{**rotor, "n_blades": 12})
+    prob = problem(many_blades, lattice_nodes=nodes, rpm=1000.0, speed=20.0)
+    with pytest.raises(om.AnalysisError, match="momentum theory: .* N at 1000 rpm and 20 m/s"):
+        prob.run_model()
+
+
+# --- rotation speed -----------------------------------------------------------------------------
+
+
+@pytest.fixture
+def trim(nodes, rotor):
+    """Problem with a `RotationSpeedComp` of the given options."""
+
+    def trim(thrust, **options):
+        options = {**rotor, "rpm_bounds": (2000.0, 9000.0), **options}
+        return problem(
+            RotationSpeedComp(**options), lattice_nodes=nodes, speed=8.0, thrust_required=thrust
+        )
+
+    return trim
+
+
+def thrust_at(nodes, rpm):
+    return float(solve_steady(nodes, 2, 0.1397, rpm * np.pi / 30.0, 8.0, 1.225).thrust)
+
+
+@pytest.mark.parametrize("thrust", [0.5, 1.2, 6.0])
+def test_thrust_is_the_required_one(nodes, trim, thrust):
+    prob = trim(thrust)
+    prob.run_model()
+    assert_allclose(thrust_at(nodes, prob.get_val("rpm")[0]), thrust, rtol=1e-6)
+
+
+@pytest.mark.parametrize("method", ["solve", pytest.param("two_point", marks=pytest.mark.slow)])
+def test_trim_partials(trim, assert_partials, method):
+    prob = trim(1.2, method=method)
+    prob.run_model()
+    # the root is good to 1e-8 relative, so its differences over steps of 1e-4 to some 1e-4
+    assert_partials(prob, {**STEPS, "thrust_required": 1e-4}, 1e-4)
+
+
+def test_two_point_is_the_rule_of_the_thesis_and_misses_the_thrust_a_little(nodes, trim):
+    prob = trim(1.2, method="two_point", rpm_bounds=(3500.0, 5000.0))
+    prob.run_model()
+    rpm = prob.get_val("rpm")[0]
+    at = [thrust_at(nodes, end) for end in (3500.0, 5000.0)]
+    assert_allclose(rpm, 3500.0 + 1500.0 * (1.2 - at[0]) / (at[1] - at[0]), rtol=1e-6)
+    # T is convex in rpm, so the chord overshoots and the thrust falls short
+    assert 0.85 < thrust_at(nodes, rpm) / 1.2 < 1.0
+
+
+def test_thrust_can_be_required_in_other_units(nodes, trim):
+    prob = trim(1.2)
+    prob.set_val("thrust_required", 1.2 / 4.4482216152605, units="lbf")
+    prob.run_model()
+    assert_allclose(thrust_at(nodes, prob.get_val("rpm", units="rpm")[0]), 1.2, rtol=1e-6)
+    assert_allclose(prob.get_val("rpm", units="rad/s"), prob.get_val("rpm") * np.pi / 30.0)
+
+
+@pytest.mark.parametrize("method", ["solve", "two_point"])
+def test_thrust_out_of_reach_is_a_failed_analysis_with_the_reason(trim, method):
+    with pytest.raises(om.AnalysisError, match=r"thrust 500 N .* rpm"):
+        trim(500.0, method=method).run_model()
+
+
+def test_bounds_that_are_no_bounds_are_an_error(trim):
+    with pytest.raises(
+        ValueError, match="rpm_bounds must be positive and rising; they are 5000, 4000"
+    ):
+        trim(1.2, rpm_bounds=(5000.0, 4000.0))
