@@ -23,10 +23,8 @@ from jax import Array
 _FOUR_PI = 4.0 * jnp.pi
 
 
-def _kernel(
-    p: tuple[Array, Array, Array], a: Array, b: Array, core4: Array
-) -> tuple[Array, Array, Array, Array]:
-    """K such that v = K (a x b), for segments in rows and points in columns; and P."""
+def _kernel(p: tuple[Array, Array, Array], a: Array, b: Array, core_radius: Array) -> Array:
+    """K such that v = K (a x b): segments (3, n_segments) in rows, points in columns."""
     px, py, pz = (x[None, :] for x in p)
     ux, uy, uz = px - a[0][:, None], py - a[1][:, None], pz - a[2][:, None]
     wx, wy, wz = px - b[0][:, None], py - b[1][:, None], pz - b[2][:, None]
@@ -36,14 +34,30 @@ def _kernel(
     qq = aa * bb
     q = jnp.sqrt(qq)
     cross2 = qq - d * d
+    # rc^4 L^4: the core beside |a x b|^4 = h^4 L^4.
+    core4 = (core_radius * core_radius * jnp.sum((b - a) ** 2, axis=0)) ** 2
     k = (q - d) * jnp.sqrt((aa + bb + 2.0 * q) / (qq * (cross2 * cross2 + core4[:, None])))
-    return k / _FOUR_PI, px, py, pz
+    return k / _FOUR_PI
 
 
-def _core4(a: Array, b: Array, core_radius: Array) -> Array:
-    """rc^4 L^4: the core term beside |a x b|^4 = h^4 L^4."""
-    length2 = jnp.sum((b - a) ** 2, axis=0)
-    return (core_radius * core_radius * length2) ** 2
+def _moments(a: Array, b: Array) -> Array:
+    """A - B and A x B, (6, n_segments), for a x b = P x (A - B) + A x B."""
+    return jnp.stack(
+        [
+            *(a - b),
+            a[1] * b[2] - a[2] * b[1],
+            a[2] * b[0] - a[0] * b[2],
+            a[0] * b[1] - a[1] * b[0],
+        ]
+    )
+
+
+def _velocity(p: tuple[Array, Array, Array], m: Array) -> Array:
+    """P x M + C for M, C in m[:3], m[3:]."""
+    px, py, pz = p
+    return jnp.stack(
+        [py * m[2] - pz * m[1] + m[3], pz * m[0] - px * m[2] + m[4], px * m[1] - py * m[0] + m[5]]
+    )
 
 
 def segment_velocities(points: Array, start: Array, end: Array, core_radius: Array) -> Array:
@@ -53,29 +67,26 @@ def segment_velocities(points: Array, start: Array, end: Array, core_radius: Arr
     ----------
     points : (n_points, 3) array
         Where the velocity is wanted [m].
-    start, end : (n_segments, 3) array
-        Ends of the segments; circulation is positive from start to end [m].
-    core_radius : (n_segments,) array
+    start, end : (n_chains, n_segments, 3) array
+        Ends of the segments, whose velocities are added over the chains, as the same segment of
+        all blades; circulation is positive from start to end [m].
+    core_radius : float
         Vortex core radius, positive [m].
 
     Returns
     -------
-    (n_segments, n_points, 3) array
+    (3, n_segments, n_points) array
         Velocity per unit circulation [1/m].
     """
-    a, b = start.T, end.T
-    k, px, py, pz = _kernel((points[:, 0], points[:, 1], points[:, 2]), a, b, _core4(a, b, core_radius))
-    # a x b = P x (A - B) + A x B
-    mx, my, mz = (m[:, None] for m in a - b)
-    cx, cy, cz = (c[:, None] for c in jnp.cross(start, end).T)
-    return jnp.stack(
-        [
-            k * (py * mz - pz * my + cx),
-            k * (pz * mx - px * mz + cy),
-            k * (px * my - py * mx + cz),
-        ],
-        axis=-1,
-    )
+    p = (points[:, 0], points[:, 1], points[:, 2])
+
+    def add(total: Array, ends: tuple[Array, Array]) -> tuple[Array, None]:
+        a, b = (x.T for x in ends)
+        k = _kernel(p, a, b, core_radius)
+        return total + k * _velocity(p, _moments(a, b)[:, :, None]), None
+
+    total = jnp.zeros((3, start.shape[1], points.shape[0]))
+    return jax.lax.scan(add, total, (start, end))[0]
 
 
 def filament_velocities(points: Array, nodes: Array, core_radius: Array) -> Array:
@@ -93,25 +104,17 @@ def filament_velocities(points: Array, nodes: Array, core_radius: Array) -> Arra
 
     Returns
     -------
-    (n_filaments, n_points, 3) array
+    (3, n_filaments, n_points) array
         Velocity per unit circulation [1/m].
     """
-    px, py, pz = points[:, 0], points[:, 1], points[:, 2]
-    n_chains = nodes.shape[1]
+    p = (points[:, 0], points[:, 1], points[:, 2])
+    core = jnp.tile(core_radius, nodes.shape[1])
 
     # One filament at a time: the block of segments x points stays in cache, and the sum over
     # segments is a matrix product. The checkpoint keeps reverse mode from storing every block.
     @jax.checkpoint
     def one(chains: Array) -> Array:
-        start = chains[:, :-1].reshape(-1, 3)
-        end = chains[:, 1:].reshape(-1, 3)
-        a, b = start.T, end.T
-        core4 = _core4(a, b, jnp.tile(core_radius, n_chains))
-        k, *_ = _kernel((px, py, pz), a, b, core4)
-        moments = jnp.concatenate([(start - end).T, jnp.cross(start, end).T])
-        return moments @ k
+        a, b = chains[:, :-1].reshape(-1, 3).T, chains[:, 1:].reshape(-1, 3).T
+        return _moments(a, b) @ _kernel(p, a, b, core)
 
-    mx, my, mz, cx, cy, cz = jnp.moveaxis(jax.lax.map(one, nodes), 1, 0)
-    return jnp.stack(
-        [py * mz - pz * my + cx, pz * mx - px * mz + cy, px * my - py * mx + cz], axis=-1
-    )
+    return _velocity(p, jnp.moveaxis(jax.lax.map(one, nodes), 1, 0))

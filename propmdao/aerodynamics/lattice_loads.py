@@ -34,7 +34,7 @@ class LatticeGeometry:
         Collocation points, then points of the bound and chordwise segments' forces [m].
     segment : (n_segments, 3) array
         Bound, then chordwise segments, in the direction of positive circulation [m].
-    influence : (n_panels + n_segments, 3, nc, ns) array
+    influence : (3, nc, ns, n_panels + n_segments) array
         Velocity at the points per unit circulation of the rings of all blades, without
         wake [1/m].
     """
@@ -131,24 +131,20 @@ def loads_with_wake(
     LatticeLoads
         Loads of blade 1.
     """
-    nc, ns = lattice.influence.shape[2:]
+    nc, ns = lattice.influence.shape[1:3]
     points, normal = lattice.points, lattice.rings.normal
     n_panels = nc * ns
     by_wake = wake_influence(points, wake_nodes, wake_core_radius)
-    influence = lattice.influence.at[:, :, -1, :].add(by_wake).reshape(-1, 3, n_panels)
+    influence = lattice.influence.at[:, -1].add(by_wake).reshape(3, n_panels, -1)
 
     # Velocity of the air relative to the turning and climbing blade: -Omega x r - V.
-    apparent = jnp.stack(
-        [
-            rotation_speed * points[:, 1],
-            -rotation_speed * points[:, 0],
-            jnp.full(points.shape[0], -speed),
-        ],
-        axis=-1,
-    )
-    downwash = jnp.einsum("pci,pc->pi", influence[:n_panels], normal)
-    circulation = jnp.linalg.solve(downwash, -(apparent[:n_panels] * normal).sum(axis=-1))
-    velocity = apparent[n_panels:] + influence[n_panels:] @ circulation
+    x, y = points[:, 0], points[:, 1]
+    apparent = jnp.stack([rotation_speed * y, -rotation_speed * x, jnp.full_like(x, -speed)])
+    downwash = (influence[:, :, :n_panels] * normal.T[:, None, :]).sum(axis=0)
+    onset = (apparent[:, :n_panels] * normal.T).sum(axis=0)
+    circulation = jnp.linalg.solve(downwash.T, -onset)
+    induced = jnp.tensordot(circulation, influence[:, :, n_panels:], axes=(0, 1))
+    velocity = (apparent[:, n_panels:] + induced).T
 
     circulation = circulation.reshape(nc, ns)
     strength = jnp.concatenate([g.ravel() for g in segment_circulation(circulation)])

@@ -14,14 +14,13 @@ from jax import Array
 from scipy.interpolate import CubicSpline
 
 from propmdao.aerodynamics.biot_savart import filament_velocities, segment_velocities
+from propmdao.geometry.lattice import lattice_chord_fraction
 from propmdao.records import record
+
 
 # Bound vortices need no physical core; this one only keeps a segment's velocity on itself at zero.
 _BOUND_CORE = 1.0e-4
 
-
-def chord_fraction(n):
-    return 0.5*(1-np.cos(np.pi*np.arange(n+1)/n))
 
 @record
 class Rings:
@@ -49,7 +48,7 @@ def _chordwise_operators(n_chordwise: int) -> tuple[np.ndarray, np.ndarray, np.n
     curvature at the collocation point: 0.6 deg of twist at 4 % camber and 8 panels. The slope of the
     spline through the nodes leaves 0.06 deg (E63, Clark-Y and NACA 4412 at 8 cosine panels).
     """
-    x = chord_fraction(n_chordwise)
+    x = lattice_chord_fraction(n_chordwise)
     at_quarter = x[:-1] + 0.25 * np.diff(x)
     at_three_quarter = x[:-1] + 0.75 * np.diff(x)
     identity = np.eye(n_chordwise + 1)
@@ -134,12 +133,13 @@ def segment_circulation(circulation: Array) -> tuple[Array, Array]:
     return bound, padded[:, :-1] - padded[:, 1:]
 
 
-def _rotate(points: Array, n_blades: int) -> Array:
-    """Copies of the points on every blade: (n_blades, ..., 3)."""
-    angle = 2.0 * jnp.pi / n_blades * jnp.arange(n_blades)
-    cos, sin = (f(angle).reshape((-1,) + (1,) * (points.ndim - 1)) for f in (jnp.cos, jnp.sin))
-    x, y, z = points[..., 0], points[..., 1], points[..., 2]
-    return jnp.stack([cos * x - sin * y, sin * x + cos * y, jnp.broadcast_to(z, (n_blades, *z.shape))], -1)
+def on_every_blade(points: Array, n_blades: int) -> Array:
+    """Copies of points (n, 3) of blade 1 on every blade: (n_blades, n, 3)."""
+    angle = 2.0 * np.pi / n_blades * np.arange(n_blades)[:, None]
+    x, y, z = points[:, 0], points[:, 1], points[:, 2]
+    cos, sin = np.cos(angle), np.sin(angle)
+    z = jnp.broadcast_to(z, (n_blades, z.size))
+    return jnp.stack([cos * x - sin * y, sin * x + cos * y, z], axis=-1)
 
 
 def blade_influence(points: Array, rings: Rings, n_blades: int, radius: Array) -> Array:
@@ -158,22 +158,20 @@ def blade_influence(points: Array, rings: Rings, n_blades: int, radius: Array) -
 
     Returns
     -------
-    (n_points, 3, nc, ns) array
+    (3, nc, ns, n_points) array
         Velocity per unit circulation [1/m].
     """
     nc, ns = rings.corner.shape[0] - 1, rings.corner.shape[1] - 1
-
-    def of_segments(ends: tuple[Array, Array]) -> Array:
-        start, end = (_rotate(e.reshape(-1, 3), n_blades).reshape(-1, 3) for e in ends)
-        core = jnp.full(start.shape[0], _BOUND_CORE) * radius
-        velocity = segment_velocities(points, start, end, core)
-        total = velocity.reshape(n_blades, -1, points.shape[0], 3).sum(axis=0)
-        return jnp.transpose(total, (1, 2, 0))
-
-    bound = of_segments(bound_segments(rings)).reshape(-1, 3, nc, ns)
-    chordwise = of_segments(chordwise_segments(rings)).reshape(-1, 3, nc, ns + 1)
-    below = jnp.pad(bound[:, :, 1:], ((0, 0), (0, 0), (0, 1), (0, 0)))
-    return bound - below + chordwise[..., 1:] - chordwise[..., :-1]
+    (root, tip), (ahead, behind) = bound_segments(rings), chordwise_segments(rings)
+    start, end = (
+        on_every_blade(jnp.concatenate([b.reshape(-1, 3), c.reshape(-1, 3)]), n_blades)
+        for b, c in ((root, ahead), (tip, behind))
+    )
+    velocity = segment_velocities(points, start, end, _BOUND_CORE * radius)
+    bound = velocity[:, : nc * ns].reshape(3, nc, ns, -1)
+    chordwise = velocity[:, nc * ns :].reshape(3, nc, ns + 1, -1)
+    ring = bound + chordwise[:, :, 1:] - chordwise[:, :, :-1]
+    return ring.at[:, :-1].add(-bound[:, 1:])
 
 
 def wake_influence(points: Array, wake_nodes: Array, wake_core_radius: Array) -> Array:
@@ -190,8 +188,8 @@ def wake_influence(points: Array, wake_nodes: Array, wake_core_radius: Array) ->
 
     Returns
     -------
-    (n_points, 3, ns) array
+    (3, ns, n_points) array
         Velocity per unit circulation [1/m].
     """
-    filament = jnp.transpose(filament_velocities(points, wake_nodes, wake_core_radius), (1, 2, 0))
-    return filament[..., 1:] - filament[..., :-1]
+    filament = filament_velocities(points, wake_nodes, wake_core_radius)
+    return filament[:, 1:] - filament[:, :-1]

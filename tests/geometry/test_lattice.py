@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from propmdao.geometry.blade import Blade, span_interpolation
-from propmdao.geometry.lattice import lattice_nodes, lattice_span
+from propmdao.geometry.lattice import lattice_chord_fraction, lattice_nodes, lattice_span
 from propmdao.propeller import Propeller
 
 R_OVER_R = np.array([0.2, 0.4, 0.6, 0.8, 1.0])
@@ -51,7 +51,7 @@ def test_rows_are_chordwise_and_columns_spanwise(twisted: Propeller) -> None:
 
 def test_nodes_lie_on_the_mean_line_of_naca_4412(straight: Callable[..., Propeller]) -> None:
     points = nodes(Blade.from_propeller(straight("naca4412")), 40)
-    x = np.linspace(0.0, 1.0, 41)
+    x = lattice_chord_fraction(40)
     camber = np.where(x < 0.4, 0.04 / 0.16 * (0.8 * x - x**2), 0.04 / 0.36 * (0.2 + 0.8 * x - x**2))
     # Chord 0.2 m at zero blade angle: leading edge at y = +c/4, camber along +z. The tolerance is
     # the spline's error beside the step of curvature at 0.4 c, 4e-6 of the chord.
@@ -107,5 +107,5 @@ def test_derivatives_agree_with_differences(
 
 def test_lattice_passes_through_jit(twisted: Propeller) -> None:
     blade = Blade.from_propeller(twisted)
-    compiled = jax.jit(lattice_nodes, static_argnums=2)(blade, SPAN, 8)
+    compiled = jax.jit(lattice_chord_fraction, lattice_nodes, static_argnums=2)(blade, SPAN, 8)
     np.testing.assert_allclose(compiled, nodes(blade), atol=1e-16)

@@ -1,0 +1,33 @@
+"""Blades and air that the aerodynamics tests share."""
+
+import numpy as np
+import pytest
+
+from propmdao.geometry.blade import Blade, span_interpolation
+from propmdao.geometry.lattice import lattice_nodes, lattice_span
+from propmdao.propeller import load_propeller
+
+RPM = np.pi / 30.0
+
+
+class SlowFlyer:
+    """APC-SF 11x4.7 as an array maker: `nodes(nc, ns)`."""
+
+    radius = 0.1397
+    n_blades = 2
+    density = 1.225
+
+    def __init__(self) -> None:
+        propeller = load_propeller("apcsf_11x4.7")
+        self.stations = propeller.r_over_R
+        self.blade = Blade.from_propeller(propeller)
+
+    def nodes(self, n_chordwise: int = 4, n_spanwise: int = 10):
+        """Lattice of the blade, coarse by default so that the tests are quick."""
+        span = span_interpolation(self.stations, lattice_span(self.stations[0], n_spanwise))
+        return lattice_nodes(self.blade, span, n_chordwise)
+
+
+@pytest.fixture(scope="session")
+def slow_flyer() -> SlowFlyer:
+    return SlowFlyer()
