@@ -1,0 +1,258 @@
+"""One call from a described propeller to its loads and its noise."""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Sequence
+from functools import partial
+from typing import Any
+
+import jax
+import numpy as np
+import numpy.typing as npt
+from jax import Array
+
+from propmdao.acoustics.formulation1a import Tones, require_subsonic_tip, tones
+from propmdao.acoustics.levels import oaspl_db, oaspl_dba, spl_db, third_octave
+from propmdao.acoustics.observers import arc
+from propmdao.aerodynamics.coefficients import Coefficients, coefficients
+from propmdao.aerodynamics.steady import SteadySolution, solve_steady
+from propmdao.aerodynamics.trim import rotation_speed_for_thrust
+from propmdao.fidelity import Fidelity
+from propmdao.geometry.blade import Blade, SpanInterpolation, span_interpolation
+from propmdao.geometry.lattice import lattice_nodes, lattice_span
+from propmdao.geometry.surface import Panels, surface_nodes, surface_panels, surface_span
+from propmdao.propeller import Propeller
+
+SOUND_SPEED = 340.294
+_RAD_PER_S = np.pi / 30.0
+# Where a required thrust is looked for: rotational tip Mach number at least, helical at most.
+_LEAST_TIP_MACH, _LARGEST_TIP_MACH = 0.01, 0.9
+
+
+@dataclasses.dataclass(frozen=True)
+class Analysis:
+    """Loads and tones of a propeller at one operating point.
+
+    Attributes
+    ----------
+    rpm, speed, density : float
+        Rotation speed [rev/min], axial flight speed [m/s], air density [kg/m^3].
+    steady : SteadySolution
+        Loads of the vortex lattice.
+    coefficients : Coefficients
+        J, CT, CQ, CP, eta.
+    observers : (n_observers, 2) array
+        Radius [m] and elevation [deg] of the observers.
+    tones : Tones
+        Their complex pressure amplitudes.
+    """
+
+    rpm: float
+    speed: float
+    density: float
+    steady: SteadySolution
+    coefficients: Coefficients
+    observers: npt.NDArray[np.float64]
+    tones: Tones
+
+    def to_dict(self) -> dict[str, Any]:
+        """Results as plain numbers, with the keys of ``propmdao analyze --json``.
+
+        Returns
+        -------
+        dict
+            rpm, speed, rho, J, thrust, torque, shaft_power, CT, CQ, CP, eta, converged and a list
+            of observers with their levels.
+        """
+        return {
+            "rpm": self.rpm,
+            "speed": self.speed,
+            "rho": self.density,
+            "J": float(self.coefficients.J),
+            "thrust": float(self.steady.thrust),
+            "torque": float(self.steady.torque),
+            "shaft_power": float(self.steady.torque) * self.rpm * _RAD_PER_S,
+            "CT": float(self.coefficients.CT),
+            "CQ": float(self.coefficients.CQ),
+            "CP": float(self.coefficients.CP),
+            "eta": float(self.coefficients.eta),
+            "converged": bool(self.steady.converged),
+            "observers": [self._observer(i) for i in range(len(self.observers))],
+        }
+
+    def _observer(self, i: int) -> dict[str, Any]:
+        frequency = self.tones.frequency_hz
+        parts = {
+            "": self.tones.total[i],
+            "thickness_": self.tones.thickness[i],
+            "loading_": self.tones.loading[i],
+        }
+        overall = {f"oaspl_{part}db": float(oaspl_db(p)) for part, p in parts.items()}
+        levels = {f"spl_{part}db": np.asarray(spl_db(p)) for part, p in parts.items()}
+        center, band = third_octave(frequency, parts[""])
+        return {
+            "elevation_deg": float(self.observers[i, 1]),
+            "radius": float(self.observers[i, 0]),
+            "spl_bpf_db": float(levels["spl_db"][0]),
+            **overall,
+            "oaspl_dba": float(oaspl_dba(frequency, parts[""])),
+            "harmonics": [
+                {"m": m + 1, "frequency_hz": float(f)}
+                | {name: float(level[m]) for name, level in levels.items()}
+                for m, f in enumerate(frequency)
+            ],
+            "third_octave": [
+                {"frequency_hz": float(f), "spl_db": float(level)}
+                for f, level in zip(center, band, strict=True)
+            ],
+        }
+
+
+def analyze(
+    propeller: Propeller,
+    *,
+    rpm: float | None = None,
+    thrust: float | None = None,
+    speed: float = 0.0,
+    density: float = 1.225,
+    twist_offset_deg: float = 0.0,
+    observers: Sequence[tuple[float, float]] = (),
+    fidelity: Fidelity = Fidelity(),  # noqa: B008 - frozen
+) -> Analysis:
+    """Analyse a propeller at a rotation speed, or at the one that gives a thrust.
+
+    Parameters
+    ----------
+    propeller : Propeller
+        The described blade.
+    rpm, thrust : float
+        Rotation speed [rev/min] or required thrust of all blades [N]; one of the two.
+    speed : float
+        Axial flight speed, 0 is hover [m/s].
+    density : float
+        Air density [kg/m^3].
+    twist_offset_deg : float
+        Added to the blade angle all over the span [deg].
+    observers : sequence of (radius, elevation_deg)
+        Microphones flying along with the rotor, on an arc around its centre: distance [m] and
+        elevation from the rotor plane, negative on the wake's side [deg].
+    fidelity : Fidelity
+        Numbers of panels and harmonics.
+
+    Returns
+    -------
+    Analysis
+        Loads and tones.
+
+    Raises
+    ------
+    ValueError
+        Bad input, in one line; `TrimError` among them when the thrust is out of reach below a tip
+        Mach number of 0.9.
+    """
+    _check(propeller, rpm, thrust, speed, density, observers)
+    blade = Blade.from_propeller(propeller)
+    blade = dataclasses.replace(blade, beta=blade.beta + np.radians(twist_offset_deg))
+    stations = propeller.r_over_R
+    nodes, panels = blade_meshes(
+        blade,
+        span_interpolation(stations, lattice_span(stations[0], fidelity.n_spanwise)),
+        span_interpolation(stations, surface_span(stations[0], fidelity.n_surface_span)),
+        fidelity.n_chordwise,
+        fidelity.n_contour,
+    )
+    radius = 0.5 * propeller.diameter
+    air = float(speed), float(density)
+    if thrust is not None:
+        omega = float(
+            rotation_speed_for_thrust(
+                nodes, propeller.n_blades, radius, *air, thrust, _rotation_bounds(radius, speed)
+            )
+        )
+    else:
+        assert rpm is not None
+        omega = rpm * _RAD_PER_S
+        require_subsonic_tip(radius, omega, speed, SOUND_SPEED)
+    steady = solve_steady(nodes, propeller.n_blades, radius, omega, *air)
+    points = np.asarray(observers, float).reshape(-1, 2)
+    heard = tones(
+        panels,
+        steady.point_loads,
+        propeller.n_blades,
+        omega,
+        *air,
+        SOUND_SPEED,
+        arc(points[:, 0], points[:, 1]),
+        fidelity.n_harmonics,
+    )
+    of = coefficients(steady.thrust, steady.torque, omega, *air, propeller.diameter)
+    return Analysis(omega / _RAD_PER_S, *air, steady, of, points, heard)
+
+
+@partial(jax.jit, static_argnames=("n_chordwise", "n_contour"))
+def blade_meshes(
+    blade: Blade,
+    lattice_radii: SpanInterpolation,
+    surface_radii: SpanInterpolation,
+    n_chordwise: int,
+    n_contour: int,
+) -> tuple[Array, Panels]:
+    """Lattice and closed surface of a blade.
+
+    Parameters
+    ----------
+    blade : Blade
+        The blade.
+    lattice_radii, surface_radii : SpanInterpolation
+        Interpolation to the radii of either mesh.
+    n_chordwise, n_contour : int
+        Lattice panels over the chord, surface points around the section.
+
+    Returns
+    -------
+    nodes : (n_chordwise + 1, n_spanwise + 1, 3) array
+        Corner points of the lattice [m].
+    panels : Panels
+        Closed surface.
+    """
+    nodes = lattice_nodes(blade, lattice_radii, n_chordwise)
+    return nodes, surface_panels(surface_nodes(blade, surface_radii, n_contour))
+
+
+def _rotation_bounds(radius: float, speed: float) -> tuple[float, float]:
+    """Rotation speeds between which a thrust is looked for [rad/s]."""
+    fastest = _LARGEST_TIP_MACH * SOUND_SPEED
+    if not speed < fastest:
+        raise ValueError(f"speed must be below {fastest:g} m/s to trim; it is {speed:g}")
+    return (
+        _LEAST_TIP_MACH * SOUND_SPEED / radius,
+        float(np.sqrt(fastest**2 - speed**2)) / radius,
+    )
+
+
+def _check(
+    propeller: Propeller,
+    rpm: float | None,
+    thrust: float | None,
+    speed: float,
+    density: float,
+    observers: Sequence[tuple[float, float]],
+) -> None:
+    """Refuse bad input with one line."""
+    if (rpm is None) == (thrust is None):
+        raise ValueError("give either rpm or thrust")
+    if rpm is not None and not 0.0 <= rpm < np.inf:
+        raise ValueError(f"rpm must be 0 or more; it is {rpm:g}")
+    if thrust is not None and not 0.0 < thrust < np.inf:
+        raise ValueError(f"thrust must be positive; it is {thrust:g} N")
+    if not 0.0 <= speed < np.inf:
+        raise ValueError(f"speed must be 0 m/s or more; it is {speed:g}")
+    if not 0.0 < density < np.inf:
+        raise ValueError(f"density must be positive; it is {density:g} kg/m3")
+    for radius, _ in observers:
+        if not radius > 0.5 * propeller.diameter:
+            raise ValueError(
+                f"observer radius must be larger than the propeller's, "
+                f"{0.5 * propeller.diameter:g} m; it is {radius:g}"
+            )
