@@ -5,6 +5,7 @@ from propmdao.components.aerodynamics_comp import AerodynamicsComp
 from propmdao.components.constrained_search import Generation
 from propmdao.components.differential_evolution_driver import DifferentialEvolutionDriver
 from propmdao.components.geometry_comp import GeometryComp
+from propmdao.components.propeller_group import PropellerGroup
 from propmdao.components.rotation_speed_comp import RotationSpeedComp
 
 __all__ = [
@@ -13,5 +14,6 @@ __all__ = [
     "DifferentialEvolutionDriver",
     "Generation",
     "GeometryComp",
+    "PropellerGroup",
     "RotationSpeedComp",
 ]

@@ -1,0 +1,173 @@
+"""A propeller as one OpenMDAO group: blade and operating point in, rpm, power and noise out."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+import openmdao.api as om
+
+from propmdao.components.acoustics_comp import AcousticsComp
+from propmdao.components.aerodynamics_comp import AerodynamicsComp, n_loads
+from propmdao.components.geometry_comp import CAMBER_INPUTS, GeometryComp, blade_distributions
+from propmdao.components.rotation_speed_comp import METHODS, RotationSpeedComp
+from propmdao.fidelity import Fidelity
+from propmdao.propeller import Propeller
+
+SPLINE_METHODS = ("slinear", "akima", "cubic")
+TIP_SPEEDS = (0.01 * 340.294, 0.9 * 340.294)  # m/s, where a rotation speed is looked for
+
+
+class PropellerGroup(om.Group):
+    """Blade, rotation speed for a thrust, aerodynamics and tonal noise.
+
+    Every variable is promoted under its name in the components, which describe shapes and units.
+
+    Inputs
+    ------
+    speed : float
+        Axial flight speed, 0 is hover, ``m/s``.
+    density, sound_speed : float
+        Of the air, ``kg/m**3``, ``m/s``.
+    thrust_required : float
+        Thrust of all blades, ``N``, with `trim` "thrust"; with "rpm" the input is `rpm`, ``rpm``.
+    observer_position : (n_observers, 3) array
+        From the rotor centre, flying along, ``m``.
+    chord_over_R, beta, sweep_over_R, rake_over_R, thickness_over_chord, camber_over_chord :
+        Distributions at the propeller's stations, `beta` in ``rad``, initially the propeller's.
+        One that is named in `design_distributions` is replaced by its control points,
+        `chord_over_R_cp` and so on, (n_control_points,) arrays.
+
+    Outputs
+    -------
+    rpm : float
+        Rotation speed, ``rpm`` (with `trim` "thrust").
+    thrust, torque, shaft_power, efficiency, J, CT, CQ, CP : float
+        Of `AerodynamicsComp`, ``N``, ``N*m``, ``W``.
+    spl_bpf_db, oaspl_db, oaspl_thickness_db, oaspl_loading_db, oaspl_dba : (n_observers,) arrays
+        Levels of the tones, dB re 20 uPa.
+    lattice_nodes, surface_nodes, circulation, load_position, load_force, mean_square_pressure, \
+frequency
+        As in `GeometryComp`, `AerodynamicsComp` and `AcousticsComp`.
+
+    Options
+    -------
+    propeller : Propeller
+        The described propeller; its values are the initial ones.
+    observers : (n_observers, 3) array
+        Initial observer positions [m]; `propmdao.acoustics.observers.arc` makes them.
+    fidelity : Fidelity
+        Numbers of panels and harmonics.
+    trim : str
+        ``"thrust"``: the rotation speed follows from `thrust_required`; ``"rpm"``: it is given.
+    rpm_bounds : (float, float)
+        Where the rotation speed is looked for [rpm]; by default where the tip turns at 0.01 to 0.9
+        of the standard speed of sound.
+    trim_method : str
+        ``"solve"`` or ``"two_point"``, see `RotationSpeedComp`.
+    design_distributions : dict
+        Distribution name -> r/R of its control points, from the first station to the tip.
+    spline_method : str
+        What leads through the control points: ``"slinear"`` (straight lines), ``"akima"`` or
+        ``"cubic"``.
+    camber : str
+        ``"camber_over_chord"``, or ``"design_lift_coefficient"`` to give camber as that.
+    """
+
+    def initialize(self) -> None:
+        declare = self.options.declare
+        declare("propeller", types=Propeller, desc="The described propeller.")
+        declare("observers", types=np.ndarray, desc="Initial observer positions [m].")
+        declare("fidelity", Fidelity(), types=Fidelity, desc="Panels and harmonics.")
+        declare("trim", "thrust", values=("thrust", "rpm"), desc="What is given.")
+        declare("rpm_bounds", None, types=tuple, allow_none=True, desc="Lowest and highest rpm.")
+        declare("trim_method", "solve", values=METHODS, desc="How the rpm is found.")
+        declare("design_distributions", {}, types=dict, desc="Name -> r/R of control points.")
+        declare("spline_method", "slinear", values=SPLINE_METHODS, desc="Through control points.")
+        declare("camber", "camber_over_chord", values=CAMBER_INPUTS, desc="How camber is given.")
+
+    def setup(self) -> None:
+        options = self.options
+        propeller, fidelity = options["propeller"], options["fidelity"]
+        self._add_splines()
+        self.add_subsystem(
+            "geometry",
+            GeometryComp(propeller=propeller, fidelity=fidelity, camber=options["camber"]),
+            promotes_outputs=["*"],
+        )
+        for name in blade_distributions(propeller, options["camber"]):
+            splined = name in options["design_distributions"]
+            # SplineComp's output has a leading axis of one.
+            self.promotes(
+                "geometry", inputs=[name], src_indices=om.slicer[0, :] if splined else None
+            )
+        rotor = {
+            "n_blades": int(propeller.n_blades),
+            "radius": 0.5 * propeller.diameter,
+            "fidelity": fidelity,
+        }
+        if options["trim"] == "thrust":
+            bounds = options["rpm_bounds"]
+            if bounds is None:
+                bounds = tuple(tip / rotor["radius"] * 30.0 / np.pi for tip in TIP_SPEEDS)
+            self.add_subsystem(
+                "rotation_speed",
+                RotationSpeedComp(**rotor, rpm_bounds=bounds, method=options["trim_method"]),
+                promotes=["*"],
+            )
+        self.add_subsystem("aerodynamics", AerodynamicsComp(**rotor), promotes=["*"])
+        self.add_subsystem(
+            "acoustics",
+            AcousticsComp(
+                n_blades=rotor["n_blades"],
+                n_loads=n_loads(fidelity),
+                observers=options["observers"],
+                fidelity=fidelity,
+            ),
+            promotes=["*"],
+        )
+
+    def _add_splines(self) -> None:
+        """Control points to stations, a spline for each design distribution."""
+        propeller = self.options["propeller"]
+        stations = propeller.r_over_R
+        initial = blade_distributions(propeller, self.options["camber"])
+        for name, at in self.options["design_distributions"].items():
+            points = _control_points(name, at, initial, stations)
+            values = np.interp(points, stations, initial[name])
+            units = "rad" if name == "beta" else None
+            spline = om.SplineComp(
+                method=self.options["spline_method"], x_cp_val=points, x_interp_val=stations
+            )
+            spline.add_spline("cp", name, y_cp_val=values, y_units=units)
+            self.add_subsystem(f"{name}_spline", spline, promotes_outputs=[name])
+            self.promotes(
+                f"{name}_spline",
+                inputs=[("cp", f"{name}_cp")],
+                src_indices=np.arange(points.size),
+                flat_src_indices=True,
+                src_shape=(points.size,),
+            )
+            self.set_input_defaults(f"{name}_cp", val=values, units=units)
+
+
+def _control_points(
+    name: str, at: object, known: Mapping[str, object], stations: np.ndarray
+) -> np.ndarray:
+    if name not in known:
+        raise ValueError(
+            f"design_distributions: unknown distribution '{name}'; there are {', '.join(known)}"
+        )
+    points = np.asarray(at, dtype=float)
+    if points.ndim != 1 or points.size < 2 or np.any(np.diff(points) <= 0.0):
+        raise ValueError(
+            f"design_distributions: control points of {name} must be at least two rising r/R; "
+            f"they are {points.tolist()}"
+        )
+    if points[0] > stations[0] or points[-1] < stations[-1]:
+        raise ValueError(
+            f"design_distributions: control points of {name} must reach from "
+            f"{stations[0]:g} to {stations[-1]:g} r/R; they reach from {points[0]:g} to "
+            f"{points[-1]:g}"
+        )
+    return points

@@ -1,0 +1,219 @@
+"""PropellerGroup: the components together, its derivatives, and optimisers on it."""
+
+import importlib
+import tomllib
+
+import numpy as np
+import openmdao.api as om
+import pytest
+from numpy.testing import assert_allclose
+
+from propmdao.acoustics.observers import arc
+from propmdao.analysis import analyze
+from propmdao.components import DifferentialEvolutionDriver, PropellerGroup
+
+ELEVATIONS = [-45.0, 0.0]
+
+
+@pytest.fixture
+def problem(propeller, small):
+    """Problem with a `PropellerGroup` of the given options at 8 m/s and 1.2 N."""
+
+    def problem(driver=None, **options):
+        prob = om.Problem(driver=driver, reports=False)
+        options = {"propeller": propeller, "fidelity": small, **options}
+        prob.model.add_subsystem(
+            "propeller", PropellerGroup(observers=arc(1.905, ELEVATIONS), **options), promotes=["*"]
+        )
+        prob.model.set_input_defaults("speed", 8.0, units="m/s")
+        if options.get("trim") != "rpm":
+            prob.model.set_input_defaults("thrust_required", 1.2, units="N")
+        return prob
+
+    return problem
+
+
+def test_group_agrees_with_analyze(problem, propeller, small):
+    prob = problem()
+    prob.setup()
+    prob.run_model()
+    assert_allclose(prob.get_val("thrust"), 1.2, rtol=1e-6)
+    expected = analyze(
+        propeller, thrust=1.2, speed=8.0, observers=[(1.905, e) for e in ELEVATIONS], fidelity=small
+    ).to_dict()
+    for ours, theirs in (
+        ("rpm", "rpm"),
+        ("thrust", "thrust"),
+        ("torque", "torque"),
+        ("shaft_power", "shaft_power"),
+        ("efficiency", "eta"),
+        ("J", "J"),
+        ("CT", "CT"),
+        ("CP", "CP"),
+    ):
+        assert_allclose(prob.get_val(ours), expected[theirs], rtol=1e-6, err_msg=ours)
+    for name in (
+        "spl_bpf_db",
+        "oaspl_db",
+        "oaspl_thickness_db",
+        "oaspl_loading_db",
+        "oaspl_dba",
+    ):
+        theirs = [at[name] for at in expected["observers"]]
+        assert_allclose(prob.get_val(name), theirs, atol=1e-4, err_msg=name)
+
+
+def test_rpm_can_be_given_instead_of_the_thrust(problem):
+    prob = problem(trim="rpm")
+    prob.setup()
+    prob.set_val("rpm", 2.0 * np.pi * 70.0, units="rad/s")
+    prob.run_model()
+    at_4200 = prob.get_val("thrust")[0]
+    trimmed = problem()
+    trimmed.setup()
+    trimmed.set_val("thrust_required", at_4200)
+    trimmed.run_model()
+    assert_allclose(trimmed.get_val("rpm"), 4200.0, rtol=1e-6)
+
+
+def test_control_points_start_on_the_propeller_and_lead_the_distribution(problem, propeller):
+    prob = problem(design_distributions={"beta": [0.15, 0.5, 1.0], "chord_over_R": [0.15, 1.0]})
+    prob.setup()
+    prob.run_model()
+    r = propeller.r_over_R
+    at = np.interp([0.15, 0.5, 1.0], r, propeller.beta_deg)
+    assert_allclose(prob.get_val("beta_cp", units="deg"), at)
+    assert_allclose(prob.get_val("beta", units="deg")[0], np.interp(r, [0.15, 0.5, 1.0], at))
+    prob.set_val("beta_cp", [20.0, 15.0, 10.0], units="deg")
+    prob.set_val("chord_over_R_cp", [0.2, 0.1])
+    prob.run_model()
+    linear = np.interp(r, [0.15, 0.5, 1.0], [20.0, 15.0, 10.0])
+    assert_allclose(prob.get_val("beta", units="deg")[0], linear)
+    assert_allclose(prob.get_val("chord_over_R")[0], np.interp(r, [0.15, 1.0], [0.2, 0.1]))
+
+
+@pytest.mark.parametrize("method", ["akima", "cubic"])
+def test_other_splines_pass_through_the_control_points(problem, propeller, method):
+    prob = problem(
+        design_distributions={"chord_over_R": [0.15, 0.4, 0.7, 1.0]}, spline_method=method
+    )
+    prob.setup()
+    prob.set_val("chord_over_R_cp", [0.1, 0.2, 0.15, 0.05])
+    prob.run_model()
+    chord = prob.get_val("chord_over_R")[0]
+    at = np.searchsorted(propeller.r_over_R, [0.15, 0.4, 0.7, 1.0])
+    assert_allclose(propeller.r_over_R[at], [0.15, 0.4, 0.7, 1.0])
+    assert_allclose(chord[at], [0.1, 0.2, 0.15, 0.05])
+
+
+@pytest.mark.parametrize(
+    ("distributions", "message"),
+    [
+        ({"twist": [0.15, 1.0]}, "unknown distribution 'twist'; there are chord_over_R, beta"),
+        (
+            {"beta": [0.15, 0.9]},
+            "of beta must reach from 0.15 to 1 r/R; they reach from 0.15 to 0.9",
+        ),
+        ({"beta": [1.0, 0.15]}, r"of beta must be at least two rising r/R; they are \[1.0, 0.15\]"),
+    ],
+)
+def test_wrong_control_points_are_clear_errors(problem, distributions, message):
+    with pytest.raises(ValueError, match=message):
+        problem(design_distributions=distributions).setup()
+
+
+def test_totals_against_central_differences(problem):
+    """From control points, operating point and observers to noise and torque, trim in between."""
+    prob = problem(
+        design_distributions={"beta": [0.15, 0.5, 1.0], "chord_over_R": [0.15, 0.5, 1.0]},
+        camber="design_lift_coefficient",
+    )
+    prob.setup(mode="rev")
+    prob.run_model()
+    of = ["oaspl_db", "torque", "rpm"]
+    wrt = ["beta_cp", "chord_over_R_cp", "design_lift_coefficient", "thickness_over_chord",
+           "speed", "density", "thrust_required", "observer_position"]  # fmt: skip
+    totals = prob.check_totals(
+        of=of, wrt=wrt, method="fd", form="central", step=1e-4, step_calc="abs", out_stream=None
+    )
+    for (name, by), total in totals.items():
+        # rpm is good to 1e-8 of itself: over steps of 1e-4, to 1e-4 of the derivative by its scale
+        largest = np.abs(total["J_fd"]).max()
+        assert_allclose(
+            total["J_rev"], total["J_fd"], rtol=0.0, atol=2e-4 * max(largest, 1e-3),
+            err_msg=f"{name} by {by}",
+        )  # fmt: skip
+
+
+def test_unreachable_thrust_is_a_failed_analysis(problem):
+    prob = problem(rpm_bounds=(1000.0, 2000.0))
+    prob.setup()
+    with pytest.raises(
+        om.AnalysisError, match=r"thrust 1.2 N is out of reach at 8 m/s: .* 2000 rpm"
+    ):
+        prob.run_model()
+
+
+def quieter(problem, driver):
+    """Twist and chord for less noise below the rotor at no more torque."""
+    prob = problem(
+        driver,
+        design_distributions={"beta": [0.15, 0.5, 1.0], "chord_over_R": [0.15, 0.5, 1.0]},
+        rpm_bounds=(3000.0, 6000.0),
+    )
+    prob.model.add_design_var("beta_cp", lower=[3.0] * 3, upper=[30.0, 25.0, 15.0], units="deg")
+    prob.model.add_design_var("chord_over_R_cp", lower=0.03, upper=0.3)
+    prob.model.add_objective("oaspl_db", index=0)
+    prob.model.add_constraint("torque", upper=0.026, ref=0.026)
+    prob.setup()
+    prob.run_model()
+    return prob, prob.get_val("oaspl_db")[0]
+
+
+def test_differential_evolution_finds_a_quieter_blade(problem, tmp_path):
+    driver = DifferentialEvolutionDriver(
+        seed=4, max_gen=8, pop_size=16, disp=False, best_file=tmp_path / "best.json"
+    )
+    prob, baseline = quieter(problem, driver)
+    assert prob.run_driver().success
+    assert prob.get_val("oaspl_db")[0] < baseline - 0.5
+    assert prob.get_val("torque")[0] <= 0.026
+    assert_allclose(prob.get_val("thrust"), 1.2, rtol=1e-6)
+    # blades that cannot give 1.2 N between the bounds came up and were passed over
+    assert driver.failed_candidates > 0
+    assert "out of reach" in driver.last_failure
+    assert (tmp_path / "best.json").exists()
+
+
+def test_gradients_lead_another_driver_to_a_quieter_blade(problem):
+    driver = om.ScipyOptimizeDriver(optimizer="SLSQP", maxiter=8, disp=False)
+    prob, baseline = quieter(problem, driver)
+    prob.run_driver()
+    assert prob.get_val("oaspl_db")[0] < baseline - 0.5
+    assert prob.get_val("torque")[0] <= 0.026 * (1.0 + 1e-3)
+
+
+def test_reports_and_recorders_of_openmdao_work_on_it(problem, tmp_path):
+    prob = problem()
+    prob.add_recorder(om.SqliteRecorder(str(tmp_path / "cases.sql")))
+    prob.setup()
+    prob.run_model()
+    prob.record("final")
+    om.n2(prob, outfile=str(tmp_path / "n2.html"), show_browser=False)
+    assert (tmp_path / "n2.html").exists()
+    prob.cleanup()
+    case = om.CaseReader(str(tmp_path / "cases.sql")).get_case("final")
+    assert_allclose(case["rpm"], prob.get_val("rpm"))
+
+
+def test_entry_points_name_what_there_is(checkout):
+    project = tomllib.loads((checkout / "pyproject.toml").read_text())["project"]
+    bases = {
+        "openmdao_component": om.ExplicitComponent,
+        "openmdao_group": om.Group,
+        "openmdao_driver": type(om.Problem().driver),
+    }
+    for group, base in bases.items():
+        for target in project["entry-points"][group].values():
+            module, name = target.split(":")
+            assert issubclass(getattr(importlib.import_module(module), name), base)
