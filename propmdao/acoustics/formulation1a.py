@@ -92,15 +92,16 @@ def tones(
     Notes
     -----
     The relative tip speed must be below the speed of sound: see `require_subsonic_tip`, for a
-    traced function cannot raise.
+    traced function cannot raise. N = 2 m_max B + 16 azimuths keep the harmonics within 0.01 dB at
+    1.5 tip radii from the centre and beyond; closer observers ask for more.
 
     References
     ----------
     F. Farassat, Derivation of Formulations 1 and 1A of Farassat, NASA TM-2007-214853.
     """
     motion = _Motion(*(jnp.asarray(q, float) for q in (rotation_speed, speed, sound_speed)))
-    thickness = partial(_thickness, panels, jnp.asarray(density, float), motion)
-    loading = partial(_loading, loads, motion)
+    thickness = _thickness(panels, jnp.asarray(density, float), motion)
+    loading = _loading(loads, motion)
 
     @jax.checkpoint  # the reverse derivative recomputes one observer at a time: megabytes, not GiB
     def hear(observer: Array) -> tuple[Array, Array]:
@@ -154,20 +155,20 @@ class _Radiation(NamedTuple):
     d: Array  # from the source at emission to the observer at reception
     r: tuple[Array, Array, Array]
     m_r: Array
-    d_mdot_r: Array  # d Mdot_r
-    m2: Array
-    dt_dtau: Array
+    near: Array  # d Mdot_r + c (M_r - M^2)
+    spread: Array  # dt/dtau / (d^2 (1 - M_r)^3)
+
+
+# From the observer's position in the turning frame to 4 pi p dt/dtau and the distance d of each
+# source. What depends on the sources alone is computed once, outside the loop over azimuths.
+_Source = Callable[[Array, Array, Array], tuple[Array, Array]]
 
 
 def _fourier_integral(
-    source: Callable[[Array, Array, Array], tuple[Array, Array]],
-    motion: _Motion,
-    n_blades: int,
-    n_harmonics: int,
-    observer: Array,
+    source: _Source, motion: _Motion, n_blades: int, n_harmonics: int, observer: Array
 ) -> Array:
-    """Average ``4 pi p dt/dtau exp(1j n Omega t)`` over one turn and make it pressure."""
-    # The integrand holds harmonics up to n (1 + M) and, in the near field, some more.
+    """Average ``p dt/dtau exp(1j n Omega t)`` of blade 1 over one turn, times B."""
+    # The integrand holds harmonics up to n (1 + M), and some more in the near field.
     n_azimuths = 2 * n_harmonics * n_blades + 16
     azimuth = 2 * np.pi * np.arange(n_azimuths) / n_azimuths
     # The observer turns back instead of the blade forward: every blade quantity stays constant.
@@ -185,52 +186,62 @@ def _fourier_integral(
     return n_blades / (4 * np.pi * n_azimuths) * jnp.sum(sums * turned, axis=0)
 
 
-def _thickness(
-    panels: Panels, density: Array, motion: _Motion, *observer: Array
-) -> tuple[Array, Array]:
-    """Strength 4 pi p dt/dtau of each panel and its distance d."""
-    # v_n dS of a rigid panel is constant, so that rho (vdot_n + v_ndot) / (d (1 - M_r)^2) is zero.
+def _thickness(panels: Panels, density: Array, motion: _Motion) -> _Source:
+    """Thickness noise, rho v_n (d Mdot_r + c (M_r - M^2)) / (d^2 (1 - M_r)^3)."""
+    # The other term, rho (vdot_n + v_ndot) / (d (1 - M_r)^2), is the change of v_n dS on a panel:
+    # zero, since the surface is rigid.
     x, y, z = panels.center.T
     sx, sy, sz = panels.vector_area.T
     v_n = motion.omega * (x * sy - y * sx) + motion.v * sz
-    d, _, m_r, d_mdot_r, m2, dt_dtau = _radiation(x, y, z, motion, *observer)
-    p = density * v_n * (d_mdot_r + motion.c * (m_r - m2)) / (d**2 * (1 - m_r) ** 3)
-    return p * dt_dtau, d
+    radiation = _radiation(x, y, z, motion)
+
+    def emit(*observer: Array) -> tuple[Array, Array]:
+        d, _, _, near, spread = radiation(*observer)
+        return density * v_n * near * spread, d
+
+    return emit
 
 
-def _loading(loads: PointLoads, motion: _Motion, *observer: Array) -> tuple[Array, Array]:
-    """Strength 4 pi p dt/dtau of each point force and its distance d."""
+def _loading(loads: PointLoads, motion: _Motion) -> _Source:
+    """Loading noise, the sum of three terms over c::
+
+    ldot_r / (d (1 - M_r)^2)
+    c (l_r - l_M) / (d^2 (1 - M_r)^2)
+    l_r (d Mdot_r + c (M_r - M^2)) / (d^2 (1 - M_r)^3)
+    """
     omega, v, c = motion
     x, y, z = loads.position.T
     lx, ly, lz = loads.force.T
-    d, r, m_r, d_mdot_r, m2, dt_dtau = _radiation(x, y, z, motion, *observer)
-    l_r = lx * r[0] + ly * r[1] + lz * r[2]
     l_m = (omega * (ly * x - lx * y) + v * lz) / c
-    ldot_r = omega * (lx * r[1] - ly * r[0])  # the force turns with the blade
-    p = (
-        ldot_r / (c * d * (1 - m_r) ** 2)
-        + (l_r - l_m) / (d**2 * (1 - m_r) ** 2)
-        + l_r * (d_mdot_r + c * (m_r - m2)) / (c * d**2 * (1 - m_r) ** 3)
-    )
-    return p * dt_dtau, d
+    radiation = _radiation(x, y, z, motion)
+
+    def emit(*observer: Array) -> tuple[Array, Array]:
+        d, r, m_r, near, spread = radiation(*observer)
+        l_r = lx * r[0] + ly * r[1] + lz * r[2]
+        ldot_r = omega * (lx * r[1] - ly * r[0])  # the force turns with the blade
+        return ((ldot_r * d / c + l_r - l_m) * (1 - m_r) + l_r * near / c) * spread, d
+
+    return emit
 
 
 def _radiation(
-    x: Array, y: Array, z: Array, motion: _Motion, x_obs: Array, y_obs: Array, z_obs: Array
-) -> _Radiation:
+    x: Array, y: Array, z: Array, motion: _Motion
+) -> Callable[[Array, Array, Array], _Radiation]:
     omega, v, c = motion
-    dx, dy, dz = x_obs - x, y_obs - y, z_obs - z
-    # While the sound travels the observer flies on: d is the root of d = |D + (V d / c) e_z|.
+    m2 = (omega / c) ** 2 * (x**2 + y**2) + (v / c) ** 2
     m_z = v / c
     beta2 = 1 - m_z**2
-    d = (m_z * dz + jnp.sqrt((m_z * dz) ** 2 + beta2 * (dx**2 + dy**2 + dz**2))) / beta2
-    r = dx / d, dy / d, dz / d + m_z
-    m_r = omega / c * (x * r[1] - y * r[0]) + m_z * r[2]
-    return _Radiation(
-        d,
-        r,
-        m_r,
-        d_mdot_r=-(omega**2) / c * (x * dx + y * dy),
-        m2=(omega / c) ** 2 * (x**2 + y**2) + m_z**2,
-        dt_dtau=(1 - m_r) / (1 - m_z * r[2]),
-    )
+
+    def toward(x_observer: Array, y_observer: Array, z_observer: Array) -> _Radiation:
+        dx, dy, dz = x_observer - x, y_observer - y, z_observer - z
+        # While the sound travels the observer flies on: d is the root of d = |D + (V d / c) e_z|.
+        d = (m_z * dz + jnp.sqrt((m_z * dz) ** 2 + beta2 * (dx**2 + dy**2 + dz**2))) / beta2
+        inverse = 1 / d
+        r = dx * inverse, dy * inverse, dz * inverse + m_z
+        m_r = omega / c * (x * r[1] - y * r[0]) + m_z * r[2]
+        near = -(omega**2) / c * (x * dx + y * dy) + c * (m_r - m2)
+        # dt/dtau = (1 - M_r) / (1 - M_observer,r)
+        spread = 1 / ((d * (1 - m_r)) ** 2 * (1 - m_z * r[2]))
+        return _Radiation(d, r, m_r, near, spread)
+
+    return toward
