@@ -203,11 +203,13 @@ def _thickness(panels: Panels, density: Array, motion: _Motion) -> _Source:
 
 
 def _loading(loads: PointLoads, motion: _Motion) -> _Source:
-    """Loading noise, the sum of three terms over c::
+    """Loading noise, the sum of three terms over c.
 
-    ldot_r / (d (1 - M_r)^2)
-    c (l_r - l_M) / (d^2 (1 - M_r)^2)
-    l_r (d Mdot_r + c (M_r - M^2)) / (d^2 (1 - M_r)^3)
+    They are::
+
+        ldot_r / (d (1 - M_r)^2)
+        c (l_r - l_M) / (d^2 (1 - M_r)^2)
+        l_r (d Mdot_r + c (M_r - M^2)) / (d^2 (1 - M_r)^3)
     """
     omega, v, c = motion
     x, y, z = loads.position.T
