@@ -49,7 +49,7 @@ def momentum_induced_velocity(
     return -0.5 * speed + jnp.sqrt(0.5 * (x + jnp.sqrt(x * x + 4.0 * floor * floor)))
 
 
-def wake_ages(turns: float, first_step: float, growth: float, last_step: float) -> np.ndarray:
+def wake_azimuths(turns: float, first_step: float, growth: float, last_step: float) -> np.ndarray:
     """Azimuth behind the blade of the wake nodes, finely spaced near the blade.
 
     Parameters

@@ -4,7 +4,7 @@ import jax.numpy as jnp
 import numpy as np
 import pytest
 
-from propmdao.aerodynamics.wake import helical_wake, momentum_induced_velocity, wake_ages
+from propmdao.aerodynamics.wake import helical_wake, momentum_induced_velocity, wake_azimuths
 
 RHO, RADIUS, OMEGA = 1.2, 0.15, 400.0
 AREA = np.pi * RADIUS**2
@@ -58,7 +58,7 @@ def test_wake_trails_behind_a_blade_that_turns_counter_clockwise():
 
 
 def test_ages_start_at_the_blade_and_end_at_the_last_turn():
-    ages = wake_ages(6.0, np.radians(10), 1.1, np.radians(30))
+    ages = wake_azimuths(6.0, np.radians(10), 1.1, np.radians(30))
     step = np.diff(ages)
     assert ages[0] == 0.0 and ages[-1] == pytest.approx(12 * np.pi)
     assert (step > 0).all() and step[0] == step.min()
