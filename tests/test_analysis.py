@@ -1,0 +1,82 @@
+"""The one-call face: same numbers as its parts, plain results, clear refusals."""
+
+import json
+
+import numpy as np
+import pytest
+
+from propmdao.analysis import analyze
+from propmdao.fidelity import Fidelity
+from propmdao.propeller import load_propeller
+
+SLOW_FLYER = load_propeller("apcsf_11x4.7")
+COARSE = Fidelity(
+    n_chordwise=4, n_spanwise=10, n_contour=21, n_surface_span=12, n_harmonics=3
+)
+
+
+def run(**asked):
+    return analyze(SLOW_FLYER, fidelity=COARSE, **asked).to_dict()
+
+
+def test_required_thrust_is_met_and_agrees_with_the_rpm_found():
+    trimmed = run(thrust=1.2, speed=8.0)
+    given = run(rpm=trimmed["rpm"], speed=8.0)
+    assert trimmed["thrust"] == pytest.approx(1.2, rel=1e-6)
+    assert given["torque"] == pytest.approx(trimmed["torque"], rel=1e-9)
+
+
+def test_results_are_consistent_plain_numbers():
+    result = run(rpm=4200.0, speed=8.0, observers=[(1.905, -45.0), (3.0, 0.0)])
+    assert json.loads(json.dumps(result, allow_nan=False)) == result
+    assert result["CP"] == pytest.approx(2 * np.pi * result["CQ"])
+    assert result["shaft_power"] == pytest.approx(result["torque"] * 4200 * np.pi / 30)
+    assert result["eta"] == pytest.approx(result["thrust"] * 8.0 / result["shaft_power"])
+    below, beside = result["observers"]
+    assert (below["radius"], below["elevation_deg"]) == (1.905, -45.0)
+    assert (beside["radius"], beside["elevation_deg"]) == (3.0, 0.0)
+    for observer in (below, beside):
+        levels = [harmonic["spl_db"] for harmonic in observer["harmonics"]]
+        assert observer["spl_bpf_db"] == levels[0]
+        energy = 10 * np.log10(sum(10 ** (level / 10) for level in levels))
+        assert observer["oaspl_db"] == pytest.approx(energy)
+        bands = [band["spl_db"] for band in observer["third_octave"]]
+        assert 10 * np.log10(sum(10 ** (level / 10) for level in bands)) == pytest.approx(energy)
+        assert [h["frequency_hz"] for h in observer["harmonics"]] == pytest.approx([140, 280, 420])
+
+
+def test_hover_and_standstill_are_ordinary():
+    hover = run(rpm=4200.0)
+    assert hover["thrust"] > 3.0 and hover["eta"] == 0.0 and hover["J"] == 0.0
+    still = run(rpm=0.0, speed=8.0, observers=[(1.905, -45.0)])
+    assert still["thrust"] == still["torque"] == still["CT"] == still["J"] == 0.0
+    assert still["converged"] and still["observers"][0]["oaspl_db"] == -200.0
+    json.dumps(still, allow_nan=False)
+
+
+def test_twist_offset_turns_the_whole_blade():
+    by_offset = run(rpm=4200.0, speed=8.0, twist_offset_deg=2.0)
+    assert by_offset["thrust"] > 1.3 * run(rpm=4200.0, speed=8.0)["thrust"]
+
+
+@pytest.mark.parametrize(
+    ("asked", "says"),
+    [
+        ({}, "give either rpm or thrust"),
+        ({"rpm": 4000.0, "thrust": 1.0}, "give either rpm or thrust"),
+        ({"rpm": -1.0}, "rpm must be 0 or more; it is -1"),
+        ({"rpm": float("nan")}, "rpm must be 0 or more"),
+        ({"thrust": 0.0}, "thrust must be positive; it is 0 N"),
+        ({"rpm": 4000.0, "speed": -2.0}, "speed must be 0 m/s or more; it is -2"),
+        ({"rpm": 4000.0, "density": 0.0}, "density must be positive; it is 0 kg/m3"),
+        ({"rpm": 4000.0, "observers": [(0.1, 0.0)]}, "observer radius must be larger than"),
+        ({"rpm": 40000.0}, "relative tip Mach number must be below 1"),
+        ({"thrust": 900.0}, "thrust 900 N is out of reach at 0 m/s"),
+        ({"thrust": 1.0, "speed": 310.0}, "speed must be below 306"),
+    ],
+)
+def test_bad_input_is_refused_in_one_line(asked, says):
+    with pytest.raises(ValueError) as error:
+        run(**asked)
+    assert says in str(error.value)
+    assert "\n" not in str(error.value)
