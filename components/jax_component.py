@@ -30,7 +30,7 @@ class JaxComponent(om.ExplicitComponent):
     static: Hashable = None
 
     def compute(self, inputs: Any, outputs: Any) -> None:
-        values = _evaluate(self.function, self.static, self.constants, arrays(inputs))
+        values = evaluate(self.function, self.static, self.constants, arrays(inputs))
         self.check(inputs, values)
         for name in outputs:
             outputs[name] = values[name]
@@ -56,7 +56,7 @@ class JaxComponent(om.ExplicitComponent):
                 n: np.array(d_inputs[n]) if n in d_inputs else np.zeros_like(inputs[n])
                 for n in inputs
             }
-            products = _forward(*at, tuple(outputs), seeds)
+            products = forward(*at, tuple(outputs), seeds)
             for name in d_outputs:
                 d_outputs[name] += products[name]
         else:
@@ -64,7 +64,7 @@ class JaxComponent(om.ExplicitComponent):
                 name: np.array(d_outputs[name]) if name in d_outputs else np.zeros(meta["shape"])
                 for name, meta in outputs.items()
             }
-            products = _reverse(*at, seeds)
+            products = reverse(*at, seeds)
             for name in d_inputs:
                 d_inputs[name] += products[name]
 
@@ -86,12 +86,13 @@ def arrays(vector: Any) -> dict[str, Any]:
 
 
 @partial(jax.jit, static_argnums=(0, 1))
-def _evaluate(function: Function, static: Hashable, constants: Any, inputs: Arrays) -> Arrays:
+def evaluate(function: Function, static: Hashable, constants: Any, inputs: Arrays) -> Arrays:
+    """Return ``function(inputs, constants, static)``, compiled."""
     return function(inputs, constants, static)
 
 
 @partial(jax.jit, static_argnums=(0, 1, 4))
-def _forward(
+def forward(
     function: Function,
     static: Hashable,
     constants: Any,
@@ -99,6 +100,8 @@ def _forward(
     of: tuple[str, ...],
     seeds: Arrays,
 ) -> Arrays:
+    """Return derivatives of the outputs `of` along the direction `seeds`, one for each input."""
+
     def chosen(x: Arrays) -> Arrays:
         values = function(x, constants, static)
         return {name: values[name] for name in of}
@@ -107,9 +110,11 @@ def _forward(
 
 
 @partial(jax.jit, static_argnums=(0, 1))
-def _reverse(
+def reverse(
     function: Function, static: Hashable, constants: Any, inputs: Arrays, seeds: Arrays
 ) -> Arrays:
+    """Return derivatives by every input of the sum of the outputs weighted with `seeds`."""
+
     def chosen(x: Arrays) -> Arrays:
         values = function(x, constants, static)
         return {name: values[name] for name in seeds}

@@ -14,14 +14,14 @@ from propmdao.aerodynamics.trim import (
     rotation_speed_for_thrust,
     solve_rotation_speed,
 )
-from propmdao.components.jax_component import Arrays, JaxComponent, arrays
+from propmdao.components.jax_component import Arrays, arrays, evaluate, reverse
 from propmdao.fidelity import Fidelity
 
 METHODS = ("solve", "two_point")
 _RAD_PER_S = np.pi / 30.0
 
 
-class RotationSpeedComp(JaxComponent):
+class RotationSpeedComp(om.ExplicitComponent):
     """Trim to a thrust, converged from any blade inside the bounds.
 
     Inputs
@@ -80,33 +80,43 @@ class RotationSpeedComp(JaxComponent):
         self.add_input("thrust_required", val=1.0, units="N")
         self.add_output("rpm", val=np.sqrt(low * high), units="rpm")
 
-        self.function = _solved if self.options["method"] == "solve" else _interpolated
-        self.static = self.options["n_blades"]
+        self.declare_partials("rpm", "*")
         self.constants = jnp.array([self.options["radius"], low * _RAD_PER_S, high * _RAD_PER_S])
 
     def compute(self, inputs: Any, outputs: Any) -> None:
-        if self.options["method"] == "two_point":
-            super().compute(inputs, outputs)
-            return
+        if self.options["method"] == "solve":
+            outputs["rpm"] = self._solve(arrays(inputs)) / _RAD_PER_S
+        else:
+            outputs["rpm"] = self._interpolate(arrays(inputs))
+
+    def compute_partials(self, inputs: Any, partials: Any) -> None:
+        # One output: a single reverse product is the whole Jacobian, for any number of responses.
+        function = _solved if self.options["method"] == "solve" else _interpolated
+        at = self.options["n_blades"], self.constants, arrays(inputs)
+        for name, gradient in reverse(function, *at, {"rpm": np.ones(1)}).items():
+            partials["rpm", name] = gradient.reshape(1, -1)
+
+    def _solve(self, inputs: Arrays) -> Any:
         nodes, n_blades, radius, speed, density, thrust, low, high = _arguments(
-            arrays(inputs), self.constants, self.options["n_blades"]
+            inputs, self.constants, self.options["n_blades"]
         )
         try:
-            omega = rotation_speed_for_thrust(
+            return rotation_speed_for_thrust(
                 nodes, n_blades, radius, speed, density, thrust, (low, high)
             )
         except TrimError as error:
             raise om.AnalysisError(str(error)) from error
-        outputs["rpm"] = omega / _RAD_PER_S
 
-    def check(self, inputs: Any, values: Any) -> None:
+    def _interpolate(self, inputs: Arrays) -> Any:
+        values = evaluate(_interpolated, self.options["n_blades"], self.constants, inputs)
         low, high = self.options["rpm_bounds"]
-        rpm = float(values["rpm"][0])
+        (rpm,) = values["rpm"]
         if not low <= rpm <= high:
             raise om.AnalysisError(
                 f"thrust {inputs['thrust_required'][0]:g} N needs {rpm:g} rpm by linear "
                 f"interpolation, outside {low:g}..{high:g} rpm"
             )
+        return rpm
 
 
 def _arguments(inputs: Arrays, constants: Any, n_blades: int) -> tuple[Any, ...]:
