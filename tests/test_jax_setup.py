@@ -62,3 +62,24 @@ def test_a_cache_entry_cut_short_costs_no_more_than_compiling(tmp_path: Path) ->
     for entry in Path(folder).iterdir():
         entry.write_bytes(entry.read_bytes()[:20])
     import_propmdao(XDG_CACHE_HOME=tmp_path)
+
+
+def test_only_the_blas_that_jax_factorises_with_loses_its_threads() -> None:
+    code = """
+import os, numpy, scipy.linalg, threadpoolctl
+def threads():
+    return {
+        os.path.basename(os.path.dirname(library["filepath"])): library["num_threads"]
+        for library in threadpoolctl.threadpool_info()
+    }
+before = threads()
+import propmdao
+if {"scipy.libs", "numpy.libs"} <= set(before):
+    assert threads() == before | {"scipy.libs": 1}, (before, threads())
+else:
+    print("no BLAS of their own")
+"""
+    result = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)
+    assert result.returncode == 0, result.stderr
+    if result.stdout:
+        pytest.skip("SciPy and NumPy do not bring a BLAS of their own here")
