@@ -17,7 +17,8 @@ from propmdao.acoustics.levels import oaspl_db, oaspl_dba, spl_db, third_octave
 from propmdao.acoustics.observers import arc
 from propmdao.aerodynamics.coefficients import Coefficients, coefficients
 from propmdao.aerodynamics.steady import SteadySolution, solve_steady
-from propmdao.aerodynamics.trim import rotation_speed_for_thrust
+from propmdao.aerodynamics.trim import rotation_bounds, rotation_speed_for_thrust
+from propmdao.aerodynamics.wake import momentum_induced_velocity
 from propmdao.fidelity import Fidelity
 from propmdao.geometry.blade import Blade, SpanInterpolation, span_interpolation
 from propmdao.geometry.lattice import lattice_nodes, lattice_span
@@ -26,8 +27,6 @@ from propmdao.propeller import Propeller
 
 SOUND_SPEED = 340.294
 _RAD_PER_S = np.pi / 30.0
-# Where a required thrust is looked for: rotational tip Mach number at least, helical at most.
-_LEAST_TIP_MACH, _LARGEST_TIP_MACH = 0.01, 0.9
 
 
 @dataclasses.dataclass(frozen=True)
@@ -148,8 +147,8 @@ def analyze(
     Raises
     ------
     ValueError
-        Bad input, in one line; `TrimError` among them when the thrust is out of reach below a tip
-        Mach number of 0.9.
+        Bad input, in one line; `TrimError` among them when the thrust is out of reach within
+        `rotation_bounds`.
     """
     _check(propeller, rpm, thrust, speed, density, observers)
     blade = Blade.from_propeller(propeller)
@@ -164,17 +163,22 @@ def analyze(
     )
     radius = 0.5 * propeller.diameter
     air = float(speed), float(density)
+    guess = 0.0
     if thrust is not None:
         omega = float(
             rotation_speed_for_thrust(
-                nodes, propeller.n_blades, radius, *air, thrust, _rotation_bounds(radius, speed)
+                nodes, propeller.n_blades, radius, *air, thrust, rotation_bounds(radius, speed)
             )
         )
+        disk_area = np.pi * radius**2
+        guess = momentum_induced_velocity(thrust, speed, omega * radius, density, disk_area)
     else:
         assert rpm is not None
         omega = rpm * _RAD_PER_S
         require_subsonic_tip(radius, omega, speed, SOUND_SPEED)
-    steady = solve_steady(nodes, propeller.n_blades, radius, omega, *air)
+    steady = solve_steady(
+        nodes, propeller.n_blades, radius, omega, *air, induced_velocity_guess=guess
+    )
     points = np.asarray(observers, float).reshape(-1, 2)
     heard = tones(
         panels,
@@ -218,17 +222,6 @@ def blade_meshes(
     """
     nodes = lattice_nodes(blade, lattice_radii, n_chordwise)
     return nodes, surface_panels(surface_nodes(blade, surface_radii, n_contour))
-
-
-def _rotation_bounds(radius: float, speed: float) -> tuple[float, float]:
-    """Rotation speeds between which a thrust is looked for [rad/s]."""
-    fastest = _LARGEST_TIP_MACH * SOUND_SPEED
-    if not speed < fastest:
-        raise ValueError(f"speed must be below {fastest:g} m/s to trim; it is {speed:g}")
-    return (
-        _LEAST_TIP_MACH * SOUND_SPEED / radius,
-        float(np.sqrt(fastest**2 - speed**2)) / radius,
-    )
 
 
 def _check(

@@ -22,12 +22,13 @@ def decreasing_root(
     Parameters
     ----------
     residual : callable
-        Continuous function, positive at `low` and negative at `high`; the ends are not evaluated.
+        Continuous function of slope about -1, positive at `low` and negative at `high`; the ends are
+        not evaluated.
     low, high, guess : float
         Bracket and first trial.
     tolerance : float
-        Relative step below which the iteration ends (the error is then that of the next
-        secant step, far smaller).
+        Relative error allowed. For a slope of about -1 a secant step leaves an error of about the
+        product of the last two steps, and the first step one below the residual.
 
     Returns
     -------
@@ -37,12 +38,13 @@ def decreasing_root(
 
     def solve(f: Callable[[Array], Array], start: Array) -> Array:
         def unfinished(state: tuple[Array, ...]) -> Array:
-            count, _, _, x, x_before, _ = state
-            moved = jnp.abs(x - x_before) > tolerance * jnp.abs(x)
-            return (count < _MAX_EVALUATIONS) & moved
+            count, _, _, x, x_before, f_before, moved = state
+            by_product = jnp.abs((x - x_before) * moved) > tolerance * x * x
+            by_residual = jnp.abs(f_before) > tolerance * jnp.abs(x)
+            return (count < _MAX_EVALUATIONS) & by_product & by_residual
 
         def step(state: tuple[Array, ...]) -> tuple[Array, ...]:
-            count, lo, hi, x, x_before, f_before = state
+            count, lo, hi, x, x_before, f_before, _ = state
             fx = f(x)
             lo, hi = jnp.where(fx > 0.0, x, lo), jnp.where(fx > 0.0, hi, x)
             # The first step has no secant: bisecting would throw the guess away, so move as if
@@ -50,10 +52,11 @@ def decreasing_root(
             slope = jnp.where(count == 0, -1.0, (fx - f_before) / (x - x_before))
             trial = x - fx / slope
             inside = (trial > lo) & (trial < hi)
-            following = jnp.where(fx == 0.0, x, jnp.where(inside, trial, 0.5 * (lo + hi)))
-            return count + 1, lo, hi, following, x, fx
+            following = jnp.where(inside | (fx == 0.0), trial, 0.5 * (lo + hi))
+            return count + 1, lo, hi, following, x, fx, x - x_before
 
-        state = (0, jnp.asarray(low, float), jnp.asarray(high, float), start, jnp.asarray(jnp.inf), jnp.asarray(0.0))
+        none = jnp.asarray(jnp.inf)
+        state = (0, jnp.asarray(low, float), jnp.asarray(high, float), start, none, none, none)
         return jax.lax.while_loop(unfinished, step, state)[3]
 
     return implicit_root(residual, guess, lambda f, start: (solve(f, start), None))[0]

@@ -20,8 +20,36 @@ _MAX_EVALUATIONS = 60
 _RPM = 30.0 / np.pi
 
 
+# Tip speeds between which a rotation speed is looked for where nobody bounds it: the air's relative
+# to the tip at most, 0.9 of the speed of sound, and that of the rotation at least, a hundredth [m/s].
+LEAST_TIP_SPEED, LARGEST_TIP_SPEED = 3.40294, 306.2646
+
+
 class TrimError(ValueError):
     """No rotation speed between the bounds gives the required thrust."""
+
+
+def rotation_bounds(radius: float, speed: float) -> tuple[float, float]:
+    """Rotation speeds between which a subsonic propeller is looked for.
+
+    Parameters
+    ----------
+    radius, speed : float
+        Tip radius [m], axial flight speed [m/s].
+
+    Returns
+    -------
+    low, high : float
+        Bounds [rad/s].
+
+    Raises
+    ------
+    TrimError
+        The flight speed alone is too high.
+    """
+    if not speed < LARGEST_TIP_SPEED:
+        raise TrimError(f"speed must be below {LARGEST_TIP_SPEED:g} m/s to trim; it is {speed:g}")
+    return LEAST_TIP_SPEED / radius, float(np.sqrt(LARGEST_TIP_SPEED**2 - speed**2)) / radius
 
 
 def rotation_speed_for_thrust(
@@ -180,9 +208,10 @@ def _bracketed_search(
     """
 
     def unfinished(state: tuple[Array, ...]) -> Array:
-        count, lo, hi, x, (x1, _), _, (at_low, at_high) = state
+        count, _, _, x, (x1, _), (x2, _), (at_low, at_high) = state
         bracketed = (count < 2) | ((at_low >= 0.0) & (at_high <= 0.0))
-        moved = (count < 2) | (jnp.abs(x - x1) > _TOLERANCE * jnp.abs(x))
+        # A secant step leaves an error of about the product of the last two.
+        moved = (count < 3) | (jnp.abs((x - x1) * (x1 - x2)) > _TOLERANCE * x * x)
         return (count < _MAX_EVALUATIONS) & bracketed & moved
 
     def step(state: tuple[Array, ...]) -> tuple[Array, ...]:
@@ -193,8 +222,8 @@ def _bracketed_search(
         lo, hi = jnp.where(f >= 0.0, x, lo), jnp.where(f < 0.0, x, hi)
         trial = _where_linear_ct_gives(thrust, x, thrust - f, x1, thrust - f1)
         inside = (trial > lo) & (trial < hi)
-        following = jnp.where(inside, trial, 0.5 * (lo + hi))
-        following = jnp.where(count == 0, high, jnp.where(f == 0.0, x, following))
+        following = jnp.where(inside | (f == 0.0), trial, 0.5 * (lo + hi))
+        following = jnp.where(count == 0, high, following)
         return count + 1, lo, hi, following, (x, f), (x1, f1), (at_low, at_high)
 
     zero = jnp.zeros_like(low)

@@ -114,3 +114,12 @@ def test_derivatives_are_those_of_the_converged_solution(slow_flyer, speed):
     np.testing.assert_allclose(exact, central, rtol=2e-6)
     reverse = jax.vmap(jax.vjp(outputs, 0.0)[1])(jnp.eye(3))[0]
     np.testing.assert_allclose(reverse, exact, rtol=1e-9)
+
+
+@pytest.mark.parametrize("guess", [0.1, 4.0, 30.0])
+def test_the_guess_changes_nothing_but_the_work(slow_flyer, guess):
+    nodes = slow_flyer.nodes()
+    air = (OMEGA, 8.0, 1.225)
+    plain = solve_steady(nodes, 2, slow_flyer.radius, *air)
+    guessed = solve_steady(nodes, 2, slow_flyer.radius, *air, induced_velocity_guess=guess)
+    assert float(guessed.thrust) == pytest.approx(float(plain.thrust), rel=1e-8)
