@@ -263,18 +263,18 @@ def _arc(values: list[float]) -> list[tuple[float, float]]:
 
 
 def _print_json(value: Any) -> None:
-    json.dump(_without_nan(value), sys.stdout, indent=2, allow_nan=False)
+    json.dump(_plain(value), sys.stdout, indent=2, allow_nan=False)
     print()
 
 
-def _without_nan(value: Any) -> Any:
-    """Copy with null for what JSON has no number for: efficiency at rest, the level of silence."""
+def _plain(value: Any) -> Any:
+    """Copy with null for what JSON has no number for, and 0 for a zero that has a sign."""
     if isinstance(value, dict):
-        return {key: _without_nan(item) for key, item in value.items()}
+        return {key: _plain(item) for key, item in value.items()}
     if isinstance(value, list):
-        return [_without_nan(item) for item in value]
-    if isinstance(value, float) and not math.isfinite(value):
-        return None
+        return [_plain(item) for item in value]
+    if isinstance(value, float):
+        return value + 0.0 if math.isfinite(value) else None
     return value
 
 

@@ -125,4 +125,5 @@ def _table() -> Table:
 
 
 def _format(value: float, form: str) -> str:
-    return format(value, form) if math.isfinite(value) else "-"
+    # A zero that has a sign is still zero.
+    return format(value + 0.0, form) if math.isfinite(value) else "-"

@@ -1,4 +1,4 @@
-"""The command line: what it accepts, prints and refuses. The physics is tested elsewhere."""
+"""The command line: what it accepts, prints and refuses; mostly with no physics behind it."""
 
 from __future__ import annotations
 
@@ -216,6 +216,62 @@ def test_malformed_toml_is_refused_in_one_line(
     file = tmp_path / "blade.toml"
     file.write_text('name = "blade"\ndiameter = = 0.3\n')
     assert "line 2" in refused(capsys, "analyze", str(file), "--rpm", "4000")
+
+
+def test_keys_are_those_promised() -> None:
+    # The whole command, as a user types it; the JSON keys are a promise to users.
+    arguments = f"analyze {PROPELLER} --rpm 4200 --speed 8 --arc 1.905 -45 0 --json".split()
+    result = run(*arguments)
+    assert (result.returncode, result.stderr) == (0, "")
+    point = json.loads(result.stdout)
+    assert list(point) == (
+        "rpm speed rho J thrust torque shaft_power CT CQ CP eta converged observers".split()
+    )
+    assert [observer["elevation_deg"] for observer in point["observers"]] == [-45, 0]
+    for observer in point["observers"]:
+        assert set(observer) == set(
+            "elevation_deg radius spl_bpf_db oaspl_db oaspl_thickness_db oaspl_loading_db oaspl_dba"
+            " harmonics third_octave".split()
+        )
+        assert set(observer["harmonics"][0]) == set(
+            "m frequency_hz spl_db spl_thickness_db spl_loading_db".split()
+        )
+        assert set(observer["third_octave"][0]) == {"frequency_hz", "spl_db"}
+        # Blade passage frequency: two blades, 70 revolutions a second.
+        assert observer["harmonics"][0]["frequency_hz"] == pytest.approx(140.0)
+    n, diameter = 70.0, 0.2794
+    assert point["J"] == pytest.approx(8.0 / (n * diameter))
+    assert point["CT"] == pytest.approx(point["thrust"] / (1.225 * n**2 * diameter**4))
+    assert point["CQ"] == pytest.approx(point["torque"] / (1.225 * n**2 * diameter**5))
+    assert point["CP"] == pytest.approx(2 * math.pi * point["CQ"])
+    assert point["eta"] == pytest.approx(point["J"] * point["CT"] / point["CP"])
+    assert point["shaft_power"] == pytest.approx(2 * math.pi * n * point["torque"])
+
+
+def test_rpm_0_gives_zero_loads(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["analyze", PROPELLER, "--rpm", "0", "--json"]) == 0
+    output = capsys.readouterr().out
+    point = json.loads(output)
+    assert point["thrust"] == point["torque"] == point["shaft_power"] == 0.0
+    assert "-0.0" not in output
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        ("--rpm -5", "rpm must be"),
+        ("--rpm 4000 --speed -1", "speed must be"),
+        ("--rpm 4000 --rho 0", "density must be positive"),
+        ("--rpm 4000 --arc 0.1 0", "radius"),
+        ("--rpm 30000", "Mach"),
+        ("--thrust -1", "thrust must be positive"),
+        ("--thrust 1000", "thrust 1000 N is out of reach"),
+    ],
+)
+def test_what_the_physics_refuses_is_one_line(
+    capsys: pytest.CaptureFixture[str], arguments: str, message: str
+) -> None:
+    assert message in refused(capsys, "analyze", PROPELLER, *arguments.split())
 
 
 def test_interrupt_ends_quietly(
