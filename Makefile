@@ -60,6 +60,6 @@ $(VENV)/installed: $(VENV)/created pyproject.toml
 	$(PIP) install --editable '.[plots]'
 	@touch $@
 
-$(VENV)/dev: $(VENV)/installed
+$(VENV)/dev: $(VENV)/created pyproject.toml
 	$(PIP) install --editable '.[plots,test,lint]'
-	@touch $@
+	@touch $(VENV)/installed $@
