@@ -33,6 +33,9 @@ class AerodynamicsComp(JaxComponent):
         Axial flight speed, 0 is hover, ``m/s``.
     density : float
         Air density, ``kg/m**3``.
+    thrust_guess : float
+        Thrust where it is nearly known, as after a trim: half of the work, the same results;
+        0 is no guess, ``N``.
 
     Outputs
     -------
@@ -75,6 +78,7 @@ class AerodynamicsComp(JaxComponent):
         self.add_input("rpm", val=4000.0, units="rpm")
         self.add_input("speed", val=0.0, units="m/s")
         self.add_input("density", val=1.225, units="kg/m**3")
+        self.add_input("thrust_guess", val=0.0, units="N", desc="Saves work; 0 is no guess.")
         self.add_output("thrust", units="N", desc="Of all blades.")
         self.add_output("torque", units="N*m", desc="Of all blades.")
         self.add_output("shaft_power", units="W", desc="Of all blades.")
@@ -101,9 +105,13 @@ class AerodynamicsComp(JaxComponent):
 
 def _steady(inputs: Arrays, constants: Any, static: int) -> Arrays:
     n_blades, radius = static, constants
-    rpm, speed, density = (inputs[name][0] for name in ("rpm", "speed", "density"))
+    rpm, speed, density, thrust_guess = (
+        inputs[name][0] for name in ("rpm", "speed", "density", "thrust_guess")
+    )
     omega = rpm * (np.pi / 30.0)
-    solution = solve_steady(inputs["lattice_nodes"], n_blades, radius, omega, speed, density)
+    solution = solve_steady(
+        inputs["lattice_nodes"], n_blades, radius, omega, speed, density, thrust_guess=thrust_guess
+    )
     of = coefficients(solution.thrust, solution.torque, omega, speed, density, 2.0 * radius)
     return {
         "thrust": solution.thrust[None],

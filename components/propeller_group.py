@@ -7,6 +7,7 @@ from collections.abc import Mapping
 import numpy as np
 import openmdao.api as om
 
+from propmdao.aerodynamics.trim import LARGEST_TIP_SPEED, LEAST_TIP_SPEED
 from propmdao.components.acoustics_comp import AcousticsComp
 from propmdao.components.aerodynamics_comp import AerodynamicsComp, n_loads
 from propmdao.components.geometry_comp import CAMBER_INPUTS, GeometryComp, blade_distributions
@@ -15,7 +16,6 @@ from propmdao.fidelity import Fidelity
 from propmdao.propeller import Propeller
 
 SPLINE_METHODS = ("slinear", "akima", "cubic")
-TIP_SPEEDS = (0.01 * 340.294, 0.9 * 340.294)  # m/s, where a rotation speed is looked for
 
 
 class PropellerGroup(om.Group):
@@ -106,16 +106,31 @@ frequency
             "radius": 0.5 * propeller.diameter,
             "fidelity": fidelity,
         }
-        if options["trim"] == "thrust":
+        trimmed = options["trim"] == "thrust"
+        if trimmed:
             bounds = options["rpm_bounds"]
             if bounds is None:
-                bounds = tuple(tip / rotor["radius"] * 30.0 / np.pi for tip in TIP_SPEEDS)
+                bounds = tuple(
+                    tip_speed / rotor["radius"] * 30.0 / np.pi
+                    for tip_speed in (LEAST_TIP_SPEED, LARGEST_TIP_SPEED)
+                )
             self.add_subsystem(
                 "rotation_speed",
                 RotationSpeedComp(**rotor, rpm_bounds=bounds, method=options["trim_method"]),
                 promotes=["*"],
             )
-        self.add_subsystem("aerodynamics", AerodynamicsComp(**rotor), promotes=["*"])
+        self.add_subsystem(
+            "aerodynamics",
+            AerodynamicsComp(**rotor),
+            promotes_inputs=[
+                "lattice_nodes",
+                "rpm",
+                "speed",
+                "density",
+                ("thrust_guess", "thrust_required") if trimmed else "thrust_guess",
+            ],
+            promotes_outputs=["*"],
+        )
         self.add_subsystem(
             "acoustics",
             AcousticsComp(

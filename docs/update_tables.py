@@ -16,7 +16,7 @@ import numpy as np
 
 from propmdao.aerodynamics.coefficients import coefficients
 from propmdao.aerodynamics.lattice_loads import lattice_geometry
-from propmdao.aerodynamics.steady import WAKE_AGES, loads_at, solve_steady
+from propmdao.aerodynamics.steady import WAKE_AGES, Flow, loads_at, solve_steady
 from propmdao.aerodynamics.wake import wake_azimuths
 from propmdao.analysis import analyze
 from propmdao.geometry.blade import Blade, span_interpolation
@@ -117,10 +117,9 @@ def uiuc() -> Rows:
 def rigid_wake_ct(nodes, rpm: float, speed: float) -> float:
     """CT with the wake carried by the flight speed alone."""
     omega = rpm * RAD_PER_S
-    loads = loads_at(lattice_geometry(nodes, 2, RADIUS), 2, RADIUS, omega, speed, DENSITY, 0.0)
-    return float(
-        coefficients(2.0 * loads.thrust, 0.0, omega, speed, DENSITY, 2.0 * RADIUS).CT
-    )
+    flow = Flow(lattice_geometry(nodes, 2, RADIUS), RADIUS, omega, speed, DENSITY)
+    loads = loads_at(flow, 2, 0.0)
+    return float(coefficients(2.0 * loads.thrust, 0.0, omega, speed, DENSITY, 2.0 * RADIUS).CT)
 
 
 def _of(solution, rpm: float, speed: float):

@@ -18,7 +18,6 @@ from propmdao.acoustics.observers import arc
 from propmdao.aerodynamics.coefficients import Coefficients, coefficients
 from propmdao.aerodynamics.steady import SteadySolution, solve_steady
 from propmdao.aerodynamics.trim import rotation_bounds, rotation_speed_for_thrust
-from propmdao.aerodynamics.wake import momentum_induced_velocity
 from propmdao.fidelity import Fidelity
 from propmdao.geometry.blade import Blade, SpanInterpolation, span_interpolation
 from propmdao.geometry.lattice import lattice_nodes, lattice_span
@@ -163,21 +162,18 @@ def analyze(
     )
     radius = 0.5 * propeller.diameter
     air = float(speed), float(density)
-    guess = 0.0
     if thrust is not None:
         omega = float(
             rotation_speed_for_thrust(
                 nodes, propeller.n_blades, radius, *air, thrust, rotation_bounds(radius, speed)
             )
         )
-        disk_area = np.pi * radius**2
-        guess = momentum_induced_velocity(thrust, speed, omega * radius, density, disk_area)
     else:
         assert rpm is not None
         omega = rpm * _RAD_PER_S
         require_subsonic_tip(radius, omega, speed, SOUND_SPEED)
     steady = solve_steady(
-        nodes, propeller.n_blades, radius, omega, *air, induced_velocity_guess=guess
+        nodes, propeller.n_blades, radius, omega, *air, thrust_guess=thrust or 0.0
     )
     points = np.asarray(observers, float).reshape(-1, 2)
     heard = tones(

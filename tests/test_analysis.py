@@ -10,9 +10,7 @@ from propmdao.fidelity import Fidelity
 from propmdao.propeller import load_propeller
 
 SLOW_FLYER = load_propeller("apcsf_11x4.7")
-COARSE = Fidelity(
-    n_chordwise=4, n_spanwise=10, n_contour=21, n_surface_span=12, n_harmonics=3
-)
+COARSE = Fidelity(n_chordwise=4, n_spanwise=10, n_contour=21, n_surface_span=12, n_harmonics=3)
 
 
 def run(**asked):

@@ -17,7 +17,6 @@ from propmdao.aerodynamics.biot_savart import filament_velocities, segment_veloc
 from propmdao.geometry.lattice import lattice_chord_fraction
 from propmdao.records import record
 
-
 # Bound vortices need no physical core; this one only keeps a segment's velocity on itself at zero.
 _BOUND_CORE = 1.0e-4
 
@@ -45,8 +44,8 @@ def _chordwise_operators(n_chordwise: int) -> tuple[np.ndarray, np.ndarray, np.n
     """Matrices from nodes to quarter points, three-quarter points and slopes there: (nc, nc + 1).
 
     A panel's own slope is that of the camber line at its middle, short by a quarter panel of
-    curvature at the collocation point: 0.6 deg of twist at 4 % camber and 8 panels. The slope of the
-    spline through the nodes leaves 0.06 deg (E63, Clark-Y and NACA 4412 at 8 cosine panels).
+    curvature at the collocation point: 0.6 deg of twist at 4 % camber and 8 panels. The slope of
+    the spline through the nodes leaves 0.06 deg (E63, Clark-Y, NACA 4412 at 8 cosine panels).
     """
     x = lattice_chord_fraction(n_chordwise)
     at_quarter = x[:-1] + 0.25 * np.diff(x)
@@ -97,8 +96,8 @@ def strip_middle(n_spanwise: int) -> np.ndarray:
     """Where the collocation and force points lie in each strip, as a fraction root to tip.
 
     At the middle of the cosine angle, not of the strip: the points at which Glauert's integral is
-    exact for the trailing vortices of cosine-spaced strips (Lan, J. Aircraft 11, 1974). The middle of
-    the strip needs 48 strips where this needs 12.
+    exact for the trailing vortices of cosine-spaced strips (Lan, J. Aircraft 11, 1974). The middle
+    of the strip needs 48 strips where this needs 12.
 
     Parameters
     ----------

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any
+from functools import partial
+from typing import Any, TypeVar
 
 import jax
 import jax.numpy as jnp
@@ -11,19 +12,21 @@ from jax import Array
 
 _MAX_EVALUATIONS = 60
 
+Params = TypeVar("Params")
+Results = TypeVar("Results")
+Notes = TypeVar("Notes")
+
 
 def decreasing_root(
     residual: Callable[[Array], Array], low: Array, high: Array, guess: Array, tolerance: float
 ) -> Array:
     """Root of a decreasing function by the secant method, kept inside a shrinking bracket.
 
-    Differentiable as `implicit_root` is.
-
     Parameters
     ----------
     residual : callable
-        Continuous function of slope about -1, positive at `low` and negative at `high`; the ends are
-        not evaluated.
+        Continuous function of slope about -1, positive at `low` and negative at `high`; the ends
+        are not evaluated.
     low, high, guess : float
         Bracket and first trial.
     tolerance : float
@@ -33,59 +36,80 @@ def decreasing_root(
     Returns
     -------
     float
-        The root; where none is found in 60 evaluations, the last trial.
+        The root; where none is found in 60 evaluations, the last trial. `at_root` makes it
+        differentiable.
     """
 
-    def solve(f: Callable[[Array], Array], start: Array) -> Array:
-        def unfinished(state: tuple[Array, ...]) -> Array:
-            count, _, _, x, x_before, f_before, moved = state
-            by_product = jnp.abs((x - x_before) * moved) > tolerance * x * x
-            by_residual = jnp.abs(f_before) > tolerance * jnp.abs(x)
-            return (count < _MAX_EVALUATIONS) & by_product & by_residual
+    def unfinished(state: tuple[Array, ...]) -> Array:
+        count, _, _, x, x_before, f_before, moved = state
+        by_product = jnp.abs((x - x_before) * moved) > tolerance * x * x
+        by_residual = jnp.abs(f_before) > tolerance * jnp.abs(x)
+        return (count < _MAX_EVALUATIONS) & by_product & by_residual
 
-        def step(state: tuple[Array, ...]) -> tuple[Array, ...]:
-            count, lo, hi, x, x_before, f_before, _ = state
-            fx = f(x)
-            lo, hi = jnp.where(fx > 0.0, x, lo), jnp.where(fx > 0.0, hi, x)
-            # The first step has no secant: bisecting would throw the guess away, so move as if
-            # the slope were -1, which is that of x = g(x) with a constant g.
-            slope = jnp.where(count == 0, -1.0, (fx - f_before) / (x - x_before))
-            trial = x - fx / slope
-            inside = (trial > lo) & (trial < hi)
-            following = jnp.where(inside | (fx == 0.0), trial, 0.5 * (lo + hi))
-            return count + 1, lo, hi, following, x, fx, x - x_before
+    def step(state: tuple[Array, ...]) -> tuple[Array, ...]:
+        count, lo, hi, x, x_before, f_before, _ = state
+        f = residual(x)
+        lo, hi = jnp.where(f > 0.0, x, lo), jnp.where(f > 0.0, hi, x)
+        # The first step has no secant: bisecting would throw the guess away, so move as if the
+        # slope were -1, which is that of x = g(x) with a constant g.
+        slope = jnp.where(count == 0, -1.0, (f - f_before) / (x - x_before))
+        trial = x - f / slope
+        inside = (trial > lo) & (trial < hi)
+        following = jnp.where(inside | (f == 0.0), trial, 0.5 * (lo + hi))
+        return count + 1, lo, hi, following, x, f, x - x_before
 
-        none = jnp.asarray(jnp.inf)
-        state = (0, jnp.asarray(low, float), jnp.asarray(high, float), start, none, none, none)
-        return jax.lax.while_loop(unfinished, step, state)[3]
-
-    return implicit_root(residual, guess, lambda f, start: (solve(f, start), None))[0]
+    none = jnp.asarray(jnp.inf)
+    start = (0, *(jnp.asarray(value, float) for value in (low, high, guess)), none, none, none)
+    return jax.lax.while_loop(unfinished, step, start)[3]
 
 
-def implicit_root(
-    residual: Callable[[Array], Array],
-    start: Array,
-    solve: Callable[[Callable[[Array], Array], Array], tuple[Array, Any]],
-) -> tuple[Array, Any]:
-    """Root found by any means, with the derivative of the implicit function theorem.
+def at_root(
+    solve: Callable[[Params], tuple[Array, Notes]],
+    evaluate: Callable[[Params, Array], Results],
+    residual: Callable[[Params, Array, Results], Array],
+    params: Params,
+) -> tuple[Array, Results, Notes]:
+    """Evaluate a model at the root of its residual, with the derivative of the implicit function.
+
+    With r(p, x) = 0 the root moves by dx = -(r_p dp) / r_x, and the results by their change at
+    fixed x plus their slope in x times dx. Nothing is differentiated through the iterations, and
+    the model is transposed once for root and results together.
 
     Parameters
     ----------
-    residual : callable
-        Function of one scalar; it may close over differentiable values.
-    start : float
-        Handed to `solve`.
     solve : callable
-        ``solve(residual, start) -> (root, other results)``.
+        ``solve(params) -> (x, notes)`` finds the root, a scalar, by any means; notes on the search,
+        a pytree of floats, are passed on without a derivative.
+    evaluate : callable
+        ``evaluate(params, x)`` gives the results, any pytree of floats.
+    residual : callable
+        ``residual(params, x, results)`` is zero at the root.
+    params : pytree
+        Everything that the three depend on: they may close over nothing that is traced.
 
     Returns
     -------
-    root, other : float, any
-        The root, differentiable in what `residual` closes over, and the other results.
+    root, results, notes : float, pytree, pytree
+        The root, the results there, and what `solve` noted.
     """
 
-    def tangent_solve(linear: Callable[[Array], Array], y: Array) -> Array:
-        return y / linear(jnp.ones_like(y))
+    @jax.custom_jvp
+    def converged(params: Params) -> tuple[Array, Results, Notes]:
+        x, notes = solve(params)
+        return x, evaluate(params, x), notes
 
-    start = jax.lax.stop_gradient(jnp.asarray(start, float))
-    return jax.lax.custom_root(residual, start, solve, tangent_solve, has_aux=True)
+    @converged.defjvp
+    def derivative(primals: tuple[Params], tangents: tuple[Params]) -> tuple[Any, Any]:
+        x, results, notes = converged(*primals)
+
+        def model(params: Params, x: Array) -> tuple[Results, Array]:
+            results = evaluate(params, x)
+            return results, residual(params, x, results)
+
+        by_x = jax.jvp(partial(model, *primals), (x,), (jnp.ones_like(x),))[1]
+        by_params = jax.jvp(lambda p: model(p, x), primals, tangents)[1]
+        dx = -by_params[1] / by_x[1]
+        d_results = jax.tree.map(lambda d, slope: d + slope * dx, by_params[0], by_x[0])
+        return (x, results, notes), (dx, d_results, jax.tree.map(jnp.zeros_like, notes))
+
+    return converged(params)

@@ -20,7 +20,7 @@ from propmdao.aerodynamics.lattice_loads import (
     lattice_geometry,
     loads_with_wake,
 )
-from propmdao.aerodynamics.roots import decreasing_root
+from propmdao.aerodynamics.roots import at_root, decreasing_root
 from propmdao.aerodynamics.wake import (
     core_radius,
     helical_wake,
@@ -29,8 +29,9 @@ from propmdao.aerodynamics.wake import (
 )
 from propmdao.records import PointLoads, record
 
-# Six turns from 10 deg steps at the blade to 30 deg. Against sixteen turns at 2 to 10 deg, with seven
-# times the segments: thrust within 0.1 %, torque within 0.2 %, in hover 1.2 % (docs/verification.md).
+# Six turns from 10 deg steps at the blade to 30 deg. Against sixteen turns at 2 to 10 deg, with
+# seven times the segments: thrust within 0.1 %, torque within 0.2 %, in hover 1.2 %
+# (docs/verification.md).
 WAKE_AGES = wake_azimuths(
     turns=6.0, first_step=np.radians(10.0), growth=1.1, last_step=np.radians(30.0)
 )
@@ -72,27 +73,61 @@ class SteadySolution:
     converged: Array
 
 
+@record
+class Flow:
+    """A lattice at an operating point.
+
+    Attributes
+    ----------
+    lattice : LatticeGeometry
+        Lattice of blade 1.
+    radius, rotation_speed, speed, density : float
+        Tip radius [m], rotation speed, not 0 [rad/s], axial flight speed [m/s], air density
+        [kg/m^3].
+    """
+
+    lattice: LatticeGeometry
+    radius: Array
+    rotation_speed: Array
+    speed: Array
+    density: Array
+
+
+_Params = tuple[Flow, Array, Array]  # with the wake's ages and the thrust guessed
+
+
+def induced_velocity(flow: Flow, thrust: Array) -> Array:
+    """Induced velocity at the disk by momentum theory.
+
+    Parameters
+    ----------
+    flow : Flow
+        Lattice and operating point.
+    thrust : float
+        Thrust of all blades [N].
+
+    Returns
+    -------
+    float
+        Induced velocity [m/s].
+    """
+    tip_speed, disk_area = flow.rotation_speed * flow.radius, jnp.pi * flow.radius**2
+    return momentum_induced_velocity(thrust, flow.speed, tip_speed, flow.density, disk_area)
+
+
 def loads_at(
-    lattice: LatticeGeometry,
-    n_blades: int,
-    radius: Array,
-    rotation_speed: Array,
-    speed: Array,
-    density: Array,
-    induced_velocity: Array,
-    wake_ages: Array = WAKE_AGES,
+    flow: Flow, n_blades: int, induced_velocity: Array, wake_ages: Array = WAKE_AGES
 ) -> LatticeLoads:
     """Loads of blade 1 in the wake that a given induced velocity transports.
 
     Parameters
     ----------
-    lattice : LatticeGeometry
-        Lattice of blade 1.
+    flow : Flow
+        Lattice and operating point.
     n_blades : int
         Number of equally spaced blades.
-    radius, rotation_speed, speed, density, induced_velocity : float
-        Tip radius [m], rotation speed [rad/s], flight speed [m/s], air density [kg/m^3],
-        induced velocity at the disk [m/s].
+    induced_velocity : float
+        Induced velocity at the disk [m/s].
     wake_ages : (n_nodes,) array
         Azimuth of the wake nodes behind the blade [rad].
 
@@ -102,11 +137,11 @@ def loads_at(
         Loads of blade 1.
     """
     ages = jnp.asarray(wake_ages)
-    wake = helical_wake(
-        lattice.rings.corner[-1], ages, n_blades, radius, rotation_speed, speed, induced_velocity
-    )
-    core = core_radius(ages, rotation_speed, _KINEMATIC_VISCOSITY, _INITIAL_CORE * radius)
-    return loads_with_wake(lattice, wake, core, rotation_speed, speed, density)
+    radius, omega = flow.radius, flow.rotation_speed
+    trailing = flow.lattice.rings.corner[-1]
+    wake = helical_wake(trailing, ages, n_blades, radius, omega, flow.speed, induced_velocity)
+    core = core_radius(ages, omega, _KINEMATIC_VISCOSITY, _INITIAL_CORE * radius)
+    return loads_with_wake(flow.lattice, wake, core, omega, flow.speed, flow.density)
 
 
 @partial(jax.jit, static_argnames="n_blades")
@@ -118,7 +153,7 @@ def solve_steady(
     speed: Array,
     density: Array,
     wake_ages: Array = WAKE_AGES,
-    induced_velocity_guess: Array = 0.0,
+    thrust_guess: Array = 0.0,
 ) -> SteadySolution:
     """Solve the steady lattice with its own wake.
 
@@ -133,9 +168,9 @@ def solve_steady(
         [m/s], air density [kg/m^3].
     wake_ages : (n_nodes,) array
         Azimuth of the wake nodes behind the blade [rad].
-    induced_velocity_guess : float
-        Where to start, as momentum theory has it for a thrust that is nearly known; it saves
-        half of the work and does not change the result. 0 is no guess [m/s].
+    thrust_guess : float
+        Thrust of all blades where it is nearly known, as after a trim: it saves half of the work
+        and does not change the result. 0 is no guess [N].
 
     Returns
     -------
@@ -143,27 +178,38 @@ def solve_steady(
         Loads, exactly differentiable in every argument but `n_blades` and the guess.
     """
     turning = rotation_speed > 0.0
-    omega = jnp.where(turning, rotation_speed, 1.0)
-    lattice = lattice_geometry(nodes, n_blades, radius)
-    area, tip_speed = jnp.pi * radius**2, omega * radius
+    flow = Flow(
+        lattice=lattice_geometry(nodes, n_blades, radius),
+        radius=jnp.asarray(radius, float),
+        rotation_speed=jnp.where(turning, rotation_speed, 1.0),
+        speed=jnp.asarray(speed, float),
+        density=jnp.asarray(density, float),
+    )
+    ages, thrust_guess = jnp.asarray(wake_ages), jnp.asarray(thrust_guess, float)
 
-    def momentum(thrust: Array) -> Array:
-        return momentum_induced_velocity(thrust, speed, tip_speed, density, area)
+    def evaluate(params: _Params, w: Array) -> LatticeLoads:
+        flow, ages, _ = params
+        return loads_at(flow, n_blades, w, ages)
 
-    def loads_in_wake_of(w: Array) -> LatticeLoads:
-        return loads_at(lattice, n_blades, radius, omega, speed, density, w, wake_ages)
+    def residual(params: _Params, w: Array, loads: LatticeLoads) -> Array:
+        return induced_velocity(params[0], n_blades * loads.thrust) - w
 
-    def residual(w: Array) -> Array:
-        return momentum(n_blades * loads_in_wake_of(w).thrust) - w
+    def solve(params: _Params) -> tuple[Array, None]:
+        flow, _, thrust_guess = params
+        tip_speed = flow.rotation_speed * flow.radius
+        known = induced_velocity(flow, thrust_guess)
+        return decreasing_root(
+            lambda w: residual(params, w, evaluate(params, w)),
+            -0.5 * flow.speed + 1.0e-6 * tip_speed,
+            tip_speed,
+            jnp.where(thrust_guess == 0.0, _GUESS * tip_speed, known),
+            _TOLERANCE,
+        ), None
 
-    least = -0.5 * speed + 1.0e-6 * tip_speed
-    known = jnp.abs(induced_velocity_guess) > 0.0
-    guess = jnp.where(known, induced_velocity_guess, _GUESS * tip_speed)
-    w = decreasing_root(residual, least, tip_speed, guess, _TOLERANCE)
-    loads = loads_in_wake_of(w)
+    w, loads, _ = at_root(solve, evaluate, residual, (flow, ages, thrust_guess))
     thrust = n_blades * loads.thrust
-    agrees = jnp.abs(momentum(thrust) - w) < 1.0e-6 * tip_speed
-    within_momentum_theory = thrust > -0.5 * density * area * speed**2
+    agrees = jnp.abs(induced_velocity(flow, thrust) - w) < 1.0e-6 * flow.rotation_speed * radius
+    within_momentum_theory = thrust > -0.5 * jnp.pi * radius**2 * density * speed**2
     on = jnp.where(turning, 1.0, 0.0)
     strip_thrust, strip_torque = strip_loads(loads)
     return SteadySolution(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 from collections.abc import Callable
 from functools import partial
 
@@ -10,18 +11,18 @@ import jax.numpy as jnp
 import numpy as np
 from jax import Array
 
-from propmdao.aerodynamics.lattice_loads import LatticeGeometry, lattice_geometry
-from propmdao.aerodynamics.roots import implicit_root
-from propmdao.aerodynamics.steady import loads_at, solve_steady
-from propmdao.aerodynamics.wake import momentum_induced_velocity
+from propmdao.aerodynamics.lattice_loads import lattice_geometry
+from propmdao.aerodynamics.roots import at_root
+from propmdao.aerodynamics.steady import Flow, induced_velocity, loads_at, solve_steady
 
 _TOLERANCE = 1.0e-8
 _MAX_EVALUATIONS = 60
 _RPM = 30.0 / np.pi
+_Params = tuple[Flow, Array, tuple[Array, Array]]  # with the thrust required and the bounds
 
 
-# Tip speeds between which a rotation speed is looked for where nobody bounds it: the air's relative
-# to the tip at most, 0.9 of the speed of sound, and that of the rotation at least, a hundredth [m/s].
+# Tip speeds between which a rotation speed is looked for where nobody bounds it [m/s]: that of the
+# rotation at least, a hundredth of the speed of sound, and that of the air at most, nine tenths.
 LEAST_TIP_SPEED, LARGEST_TIP_SPEED = 3.40294, 306.2646
 
 
@@ -87,7 +88,8 @@ def rotation_speed_for_thrust(
     low, high = (float(bound) for bound in bounds)
     if not 0.0 < low < high:
         raise TrimError(
-            f"rpm bounds must be positive and increasing; they are {low * _RPM:g} and {high * _RPM:g}"
+            "rpm bounds must be positive and increasing; "
+            f"they are {low * _RPM:g} and {high * _RPM:g}"
         )
     flight = (float(speed), float(density))
     omega, missing_at_low, missing_at_high = solve_rotation_speed(
@@ -131,8 +133,10 @@ def rotation_speed_by_interpolation(
     float
         Rotation speed; beyond the two, an extrapolation [rad/s].
     """
-    at_low, at_high = (
-        solve_steady(nodes, n_blades, radius, end, speed, density).thrust for end in (low, high)
+    # Mapped, so that the lattice is compiled once for both.
+    at_low, at_high = jax.lax.map(
+        lambda end: solve_steady(nodes, n_blades, radius, end, speed, density).thrust,
+        jnp.stack([low, high]),
     )
     return low + (high - low) * (thrust_required - at_low) / (at_high - at_low)
 
@@ -167,35 +171,33 @@ def solve_rotation_speed(
         The root, exactly differentiable, means nothing unless the thrust missing is positive
         at `low` and negative at `high` [rad/s], [N], [N].
     """
-    lattice = lattice_geometry(nodes, n_blades, radius)
+    # The rotation speed in here is that of no trial yet.
+    flow = Flow(
+        lattice=lattice_geometry(nodes, n_blades, radius),
+        radius=jnp.asarray(radius, float),
+        rotation_speed=jnp.asarray(low, float),
+        speed=jnp.asarray(speed, float),
+        density=jnp.asarray(density, float),
+    )
 
-    def missing(omega: Array) -> Array:
-        return thrust_required - _thrust_in_wake_of(
-            thrust_required, lattice, n_blades, radius, omega, speed, density
+    def thrust(params: _Params, omega: Array) -> Array:
+        flow, required, _ = params
+        flow = dataclasses.replace(flow, rotation_speed=omega)
+        return n_blades * loads_at(flow, n_blades, induced_velocity(flow, required)).thrust
+
+    def missing(params: _Params, omega: Array, thrust: Array) -> Array:
+        return params[1] - thrust
+
+    def solve(params: _Params) -> tuple[Array, tuple[Array, Array]]:
+        _, required, (low, high) = params
+        return _bracketed_search(
+            lambda omega: missing(params, omega, thrust(params, omega)), required, low, high
         )
 
-    def solve(f: Callable[[Array], Array], start: Array) -> tuple[Array, tuple[Array, Array]]:
-        del start
-        return _bracketed_search(f, thrust_required, low, high)
-
-    omega, (at_low, at_high) = implicit_root(missing, low, solve)
+    bounds = (jnp.asarray(low, float), jnp.asarray(high, float))
+    params = (flow, jnp.asarray(thrust_required, float), bounds)
+    omega, _, (at_low, at_high) = at_root(solve, thrust, missing, params)
     return omega, at_low, at_high
-
-
-def _thrust_in_wake_of(
-    wake_thrust: Array,
-    lattice: LatticeGeometry,
-    n_blades: int,
-    radius: Array,
-    omega: Array,
-    speed: Array,
-    density: Array,
-) -> Array:
-    """Thrust at a rotation speed in the wake of a propeller that gives `wake_thrust`."""
-    w = momentum_induced_velocity(
-        wake_thrust, speed, omega * radius, density, jnp.pi * radius**2
-    )
-    return n_blades * loads_at(lattice, n_blades, radius, omega, speed, density, w).thrust
 
 
 def _bracketed_search(

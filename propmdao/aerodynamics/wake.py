@@ -106,7 +106,9 @@ def helical_wake(
     time = ages / rotation_speed
     s = time * mean_speed / radius
     root = jnp.sqrt(1.0 + s * s)
-    axial = (speed + induced_velocity) * time + induced_velocity * radius / mean_speed * (root - 1.0)
+    axial = (speed + induced_velocity) * time + induced_velocity * radius / mean_speed * (
+        root - 1.0
+    )
     far = speed + induced_velocity * (1.0 + s / root)
     contraction = jnp.sqrt((speed + induced_velocity) / far)
 

@@ -5,7 +5,7 @@ import numpy as np
 
 from propmdao.aerodynamics.lattice_loads import lattice_geometry
 from propmdao.aerodynamics.rings import Rings, blade_influence, wake_influence
-from propmdao.aerodynamics.steady import WAKE_AGES, loads_at
+from propmdao.aerodynamics.steady import WAKE_AGES, Flow, loads_at
 from propmdao.aerodynamics.wake import core_radius, helical_wake
 
 B = 3
@@ -23,7 +23,8 @@ def turned(vectors, blade):
 def test_one_blade_for_all_is_all_blades_solved(slow_flyer):
     nodes, radius = slow_flyer.nodes(3, 6), slow_flyer.radius
     lattice = lattice_geometry(nodes, B, radius)
-    by_symmetry = loads_at(lattice, B, radius, OMEGA, SPEED, DENSITY, INDUCED).circulation
+    flow = Flow(lattice, radius, OMEGA, SPEED, DENSITY)
+    by_symmetry = loads_at(flow, B, INDUCED).circulation
 
     # All blades on their own: unknowns of every blade, each with its own single-bladed influence.
     rings = [

@@ -67,9 +67,7 @@ def test_elliptic_wing_has_elliptic_loading_and_the_least_induced_drag():
     span = 1.0
     root = 4 * span / (np.pi * aspect_ratio)
     # A chord of nothing has no panel; 1e-3 of the root at the tip is 1e-5 of the area.
-    nodes = wing_nodes(
-        span, lambda eta: root * np.sqrt(np.clip(1 - eta**2, 1e-6, 1)), alpha, 4, 40
-    )
+    nodes = wing_nodes(span, lambda eta: root * np.sqrt(np.clip(1 - eta**2, 1e-6, 1)), alpha, 4, 40)
     loads, lift, drag = wing_loads(nodes, span)
     pressure_area = 0.5 * DENSITY * SPEED**2 * span**2 / aspect_ratio
     cl, cd = float(lift) / pressure_area, float(drag) / pressure_area
