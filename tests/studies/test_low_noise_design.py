@@ -1,0 +1,235 @@
+"""The design study, run coarse and short: what it prints and writes is what the model says."""
+
+from __future__ import annotations
+
+import csv
+import dataclasses
+import importlib.util
+import io
+import json
+from contextlib import redirect_stdout
+from pathlib import Path
+from types import ModuleType
+
+import numpy as np
+import openmdao.api as om
+import pytest
+from numpy.testing import assert_allclose
+
+pytest.importorskip("matplotlib")
+
+from propmdao.analysis import analyze
+from propmdao.comparison import ROWS, at_observer
+from propmdao.components import AcousticsComp
+from propmdao.fidelity import Fidelity
+from propmdao.propeller import Propeller, load_propeller
+
+COARSE = Fidelity(n_chordwise=4, n_spanwise=8, n_contour=15, n_surface_span=12, n_harmonics=3)
+# Table 4.10 of the thesis, as printed: APC 11x4.7 SF, optimized, difference.
+TABLE_4_10 = {
+    "rotation speed, rpm": ("4200", "4636", None),  # printed: +636
+    "thrust, N": ("1.20", "1.24", "+0.04"),
+    "CT": ("0.040", "0.035", "-0.005"),
+    "CQ": ("0.0034", "0.0026", "-0.0008"),
+    "OASPL thickness, dB": ("37.88", "33.18", "-4.70"),
+    "OASPL loading, dB": ("52.87", "41.33", "-11.54"),
+    "OASPL total, dB": ("53.04", "38.93", "-14.11"),
+    "SPL at BPF, dB": ("44.92", "37.09", "-7.83"),
+    "BPF, Hz": ("140", "155", "+15"),
+}
+
+
+def import_study(checkout: Path) -> ModuleType:
+    """A fresh module from the script, as from a copy of it anywhere."""
+    spec = importlib.util.spec_from_file_location(
+        "low_noise_design", checkout / "studies" / "low_noise_design.py"
+    )
+    assert spec is not None and spec.loader is not None
+    study = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(study)
+    return study
+
+
+def coarse_study(checkout: Path) -> ModuleType:
+    study = import_study(checkout)
+    study.FIDELITY, study.POPULATION = COARSE, 6
+    return study
+
+
+def run_main(study: ModuleType, folder: Path, *arguments: str) -> str:
+    """Run the script's main and return what it prints."""
+    with pytest.MonkeyPatch.context() as patch, redirect_stdout(io.StringIO()) as printed:
+        patch.setenv("COLUMNS", "80")
+        patch.setattr("sys.argv", ["low_noise_design.py", "--output", str(folder), *arguments])
+        study.main()
+    return printed.getvalue()
+
+
+@dataclasses.dataclass
+class Run:
+    """Output of a run of the script, its table read back by label and column."""
+
+    folder: Path
+    printed: str
+    rows: dict[str, dict[str, str]]
+
+    def column(self, heading: str) -> dict[str, float]:
+        return {key: float(self.rows[label][heading]) for label, key, _ in ROWS}
+
+
+@pytest.fixture(scope="module")
+def run(checkout: Path, tmp_path_factory: pytest.TempPathFactory) -> Run:
+    folder = tmp_path_factory.mktemp("study") / "new" / "folder"
+    printed = run_main(coarse_study(checkout), folder, "--evaluations", "19", "--seed", "3")
+    with (folder / "low_noise_design.csv").open(newline="", encoding="utf-8") as stream:
+        return Run(folder, printed, {row.pop(""): row for row in csv.DictReader(stream)})
+
+
+def analysis(propeller: Propeller, **drive: float) -> dict[str, float]:
+    return at_observer(
+        analyze(propeller, **drive, speed=8.0, observers=[(1.905, -45.0)], fidelity=COARSE)
+    )
+
+
+@pytest.mark.parametrize("heading", ["APC-SF 11x4.7", "optimum", "thesis' optimum"])
+def test_columns_are_what_analyze_says_of_the_propeller(run: Run, heading: str) -> None:
+    # Of the files that a user gets for the two new blades.
+    name = {"optimum": "optimum.toml", "thesis' optimum": "thesis_optimum.toml"}.get(heading)
+    propeller = load_propeller(run.folder / name if name else "apcsf_11x4.7")
+    column = run.column(heading)
+    expected = analysis(propeller, thrust=1.2)
+    assert_allclose(list(column.values()), [expected[key] for key in column], rtol=1e-12)
+    assert_allclose(column["thrust"], 1.2, rtol=1e-8)
+
+
+def test_the_written_blade_is_the_one_that_was_optimised(run: Run) -> None:
+    best = json.loads((run.folder / "best_design.json").read_text())
+    (objective,) = best["objective"].values()
+    (torque,) = best["constraints"].values()
+    column = run.column("optimum")
+    assert_allclose(column["oaspl_db"], objective["value"], atol=1e-7)
+    assert_allclose(column["torque"], torque["value"], rtol=1e-8)
+    for key, row in (("thickness_over_chord", "t/c"), ("design_lift_coefficient", "design lift")):
+        design = best["design_variables"][f"{key}_cp"]["value"]
+        shown = [float(run.rows[f"{row} {at}"]["optimum"]) for at in ("hub", "middle", "tip")]
+        assert_allclose(shown, design, rtol=1e-12)
+
+
+def test_the_optimum_is_feasible_and_no_louder_than_any_feasible_design(
+    run: Run, checkout: Path
+) -> None:
+    optimum, baseline = run.column("optimum"), run.column("APC-SF 11x4.7")
+    assert optimum["torque"] <= baseline["torque"]
+    objective, feasible = coarse_study(checkout).designs_tried(run.folder, baseline["torque"])
+    assert len(objective) == 18  # whole generations of 6 within 19 evaluations
+    assert_allclose(optimum["oaspl_db"], np.min(np.array(objective)[feasible]), atol=1e-7)
+
+
+def test_the_search_starts_from_naca_4409(run: Run, checkout: Path) -> None:
+    start = dataclasses.replace(load_propeller("apcsf_11x4.7"), airfoils=[(1.0, "naca4409")])
+    objective, _ = coarse_study(checkout).designs_tried(run.folder, np.inf)
+    assert_allclose(objective[0], analysis(start, thrust=1.2)["oaspl_db"], atol=1e-7)
+
+
+def test_change_is_optimum_minus_baseline(run: Run) -> None:
+    before, after = run.column("APC-SF 11x4.7"), run.column("optimum")
+    for key, change in run.column("change").items():
+        assert_allclose(change, after[key] - before[key], rtol=1e-12)
+
+
+@pytest.mark.parametrize(("label", "printed"), TABLE_4_10.items())
+def test_reported_numbers_are_those_of_the_thesis(
+    run: Run, label: str, printed: tuple[str, str, str | None]
+) -> None:
+    before, after = (
+        float(run.rows[label][f"reported: {heading}"]) for heading in ("APC-SF", "optimum")
+    )
+    assert (before, after) == (float(printed[0]), float(printed[1]))
+    if printed[2] is not None:  # retyped from a third column, so a slip in one of them shows
+        assert_allclose(after - before, float(printed[2]), atol=1e-9)
+
+
+def test_sections_of_the_thesis_have_its_names(run: Run) -> None:
+    names = [run.rows[f"section {at}"]["thesis' optimum"] for at in ("hub", "middle", "tip")]
+    assert names == ["NACA 6406", "NACA 3403", "NACA 4403"]  # table 4.9
+
+
+def test_printed_table_is_the_csv_rounded_and_fits_a_terminal(run: Run) -> None:
+    table = run.printed[: run.printed.index("Comparable")].splitlines()
+    assert max(map(len, table[1:])) <= 80  # above it stands the driver's summary
+    for label, _, form in ROWS:
+        (line,) = (line for line in table if line.startswith(f"{label} "))
+        cells = {heading: text for heading, text in run.rows[label].items() if text}
+        rounded = [
+            format(float(text), f"+{form}" if heading == "change" else form)
+            for heading, text in cells.items()
+        ]
+        assert line.removeprefix(label).split() == rounded
+
+
+def test_note_compares_with_the_thesis_at_its_rotation_speed(run: Run) -> None:
+    at_4200 = analysis(load_propeller("apcsf_11x4.7"), rpm=4200.0)
+    note = " ".join(run.printed.split())
+    assert f"at 4200 rpm here: {at_4200['thrust']:.2f} N, CT {at_4200['CT']:.4f}" in note
+    assert f"thickness {at_4200['oaspl_thickness_db']:.2f} dB" in note
+    assert f"BPF {at_4200['spl_bpf_db']:.2f} dB" in note
+
+
+@pytest.mark.parametrize("name", ["convergence", "blades", "spectrum", "pressure", "directivity"])
+def test_figures_are_1200_pixels_wide(run: Run, name: str) -> None:
+    image = (run.folder / f"{name}.png").read_bytes()
+    assert image.startswith(b"\x89PNG")
+    assert int.from_bytes(image[16:20], "big") == 1200
+
+
+def test_same_seed_gives_the_same_design(run: Run, checkout: Path, tmp_path: Path) -> None:
+    study = coarse_study(checkout)
+    problem = study.build_problem(run.column("APC-SF 11x4.7")["torque"])
+    study.optimise(problem, 19, 3, tmp_path)
+    again, first = ((f / "best_design.json").read_text() for f in (tmp_path, run.folder))
+    assert again == first
+
+
+def test_an_interrupted_run_leaves_its_best_design_and_says_where(
+    checkout: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    compute, calls = AcousticsComp.compute, []
+
+    def interrupted(self: AcousticsComp, inputs: object, outputs: object) -> None:
+        calls.append(None)
+        if len(calls) == 4:
+            raise KeyboardInterrupt
+        compute(self, inputs, outputs)
+
+    monkeypatch.setattr(AcousticsComp, "compute", interrupted)
+    with pytest.raises(SystemExit) as stop:
+        run_main(coarse_study(checkout), tmp_path)
+    file = tmp_path / "best_design.json"
+    assert str(file) in str(stop.value)
+    assert json.loads(file.read_text())["evaluations"] <= 3
+
+
+def test_without_a_feasible_design_there_is_one_line_and_no_table(
+    checkout: Path, tmp_path: Path
+) -> None:
+    study = coarse_study(checkout)
+    problem = study.build_problem(1e-3)
+    with pytest.raises(SystemExit, match="No design meets the constraint"):
+        study.optimise(problem, 6, 1, tmp_path)
+    assert not (tmp_path / "best_design.json").exists()
+
+
+@pytest.mark.slow
+def test_evolution_comes_within_a_twentieth_of_a_decibel_of_gradients(
+    checkout: Path, tmp_path: Path
+) -> None:
+    study = import_study(checkout)
+    study.FIDELITY = COARSE
+    limit = analysis(load_propeller("apcsf_11x4.7"), thrust=1.2)["torque"]
+    by_gradient = study.build_problem(limit)
+    by_gradient.driver = om.ScipyOptimizeDriver(optimizer="SLSQP", tol=1e-7, disp=False)
+    by_gradient.run_driver()
+    evolved = study.build_problem(limit)
+    study.optimise(evolved, 600, 1, tmp_path)
+    difference = evolved.get_val("oaspl_db") - by_gradient.get_val("oaspl_db")
+    assert -1e-3 < difference < 0.05
