@@ -9,6 +9,9 @@ import jax
 
 T = TypeVar("T")
 
+#: A number, traced or not.
+Scalar = jax.Array | float
+
 
 @dataclass_transform(frozen_default=True)
 def record(cls: type[T]) -> type[T]:
@@ -26,7 +29,7 @@ def record(cls: type[T]) -> type[T]:
         ``jit``, ``jvp`` and ``vjp``.
     """
     frozen = dataclasses.dataclass(frozen=True)(cls)
-    return jax.tree_util.register_dataclass(frozen)  # type: ignore[return-value]
+    return jax.tree_util.register_dataclass(frozen)
 
 
 @record

@@ -2,15 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 
-def arc(
-    radius: float | Sequence[float], elevation_deg: float | Sequence[float]
-) -> NDArray[np.float64]:
+def arc(radius: ArrayLike, elevation_deg: ArrayLike) -> NDArray[np.float64]:
     """Place observers on a vertical arc around the rotor centre.
 
     Parameters

@@ -20,10 +20,12 @@ import jax
 import jax.numpy as jnp
 from jax import Array
 
+from propmdao.records import Scalar
+
 _FOUR_PI = 4.0 * jnp.pi
 
 
-def _kernel(p: tuple[Array, Array, Array], a: Array, b: Array, core_radius: Array) -> Array:
+def _kernel(p: tuple[Array, Array, Array], a: Array, b: Array, core_radius: Scalar) -> Array:
     """K such that v = K (a x b): segments (3, n_segments) in rows, points in columns."""
     px, py, pz = (x[None, :] for x in p)
     ux, uy, uz = px - a[0][:, None], py - a[1][:, None], pz - a[2][:, None]
@@ -60,7 +62,7 @@ def _velocity(p: tuple[Array, Array, Array], m: Array) -> Array:
     )
 
 
-def segment_velocities(points: Array, start: Array, end: Array, core_radius: Array) -> Array:
+def segment_velocities(points: Array, start: Array, end: Array, core_radius: Scalar) -> Array:
     """Velocity of each segment of unit circulation at each point.
 
     Parameters

@@ -5,7 +5,7 @@ from __future__ import annotations
 import jax.numpy as jnp
 from jax import Array
 
-from propmdao.records import record
+from propmdao.records import Scalar, record
 
 
 @record
@@ -30,12 +30,12 @@ class Coefficients:
 
 
 def coefficients(
-    thrust: Array,
-    torque: Array,
-    rotation_speed: Array,
-    speed: Array,
-    density: Array,
-    diameter: Array,
+    thrust: Scalar,
+    torque: Scalar,
+    rotation_speed: Scalar,
+    speed: Scalar,
+    density: Scalar,
+    diameter: Scalar,
 ) -> Coefficients:
     """Coefficients of a propeller.
 

@@ -19,7 +19,7 @@ from propmdao.aerodynamics.rings import (
     vortex_rings,
     wake_influence,
 )
-from propmdao.records import record
+from propmdao.records import Scalar, record
 
 
 @record
@@ -75,7 +75,7 @@ class LatticeLoads:
         return -(x * self.force[:, 1] - y * self.force[:, 0]).sum()
 
 
-def lattice_geometry(nodes: Array, n_blades: int, radius: Array) -> LatticeGeometry:
+def lattice_geometry(nodes: Array, n_blades: int, radius: Scalar) -> LatticeGeometry:
     """Rings, points and the part of the influence that no wake changes.
 
     Parameters
@@ -109,9 +109,9 @@ def loads_with_wake(
     lattice: LatticeGeometry,
     wake_nodes: Array,
     wake_core_radius: Array,
-    rotation_speed: Array,
-    speed: Array,
-    density: Array,
+    rotation_speed: Scalar,
+    speed: Scalar,
+    density: Scalar,
 ) -> LatticeLoads:
     """Solve for the circulation in a given wake and take the forces.
 

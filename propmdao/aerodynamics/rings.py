@@ -15,7 +15,7 @@ from scipy.interpolate import CubicSpline
 
 from propmdao.aerodynamics.biot_savart import filament_velocities, segment_velocities
 from propmdao.geometry.lattice import lattice_chord_fraction
-from propmdao.records import record
+from propmdao.records import Scalar, record
 
 # Bound vortices need no physical core; this one only keeps a segment's velocity on itself at zero.
 _BOUND_CORE = 1.0e-4
@@ -141,7 +141,7 @@ def on_every_blade(points: Array, n_blades: int) -> Array:
     return jnp.stack([cos * x - sin * y, sin * x + cos * y, z], axis=-1)
 
 
-def blade_influence(points: Array, rings: Rings, n_blades: int, radius: Array) -> Array:
+def blade_influence(points: Array, rings: Rings, n_blades: int, radius: Scalar) -> Array:
     """Velocity at the points per unit circulation of each ring of all blades, wake left out.
 
     Parameters

@@ -10,6 +10,8 @@ import jax
 import jax.numpy as jnp
 from jax import Array
 
+from propmdao.records import Scalar
+
 _MAX_EVALUATIONS = 60
 
 Params = TypeVar("Params")
@@ -18,7 +20,11 @@ Notes = TypeVar("Notes")
 
 
 def decreasing_root(
-    residual: Callable[[Array], Array], low: Array, high: Array, guess: Array, tolerance: float
+    residual: Callable[[Array], Array],
+    low: Scalar,
+    high: Scalar,
+    guess: Scalar,
+    tolerance: float,
 ) -> Array:
     """Root of a decreasing function by the secant method, kept inside a shrinking bracket.
 
@@ -40,13 +46,13 @@ def decreasing_root(
         differentiable.
     """
 
-    def unfinished(state: tuple[Array, ...]) -> Array:
+    def unfinished(state: Any) -> Array:
         count, _, _, x, x_before, f_before, moved = state
         by_product = jnp.abs((x - x_before) * moved) > tolerance * x * x
         by_residual = jnp.abs(f_before) > tolerance * jnp.abs(x)
         return (count < _MAX_EVALUATIONS) & by_product & by_residual
 
-    def step(state: tuple[Array, ...]) -> tuple[Array, ...]:
+    def step(state: Any) -> Any:
         count, lo, hi, x, x_before, f_before, _ = state
         f = residual(x)
         lo, hi = jnp.where(f > 0.0, x, lo), jnp.where(f > 0.0, hi, x)
@@ -59,8 +65,9 @@ def decreasing_root(
         return count + 1, lo, hi, following, x, f, x - x_before
 
     none = jnp.asarray(jnp.inf)
-    start = (0, *(jnp.asarray(value, float) for value in (low, high, guess)), none, none, none)
-    return jax.lax.while_loop(unfinished, step, start)[3]
+    start: Any = (0, *(jnp.asarray(value, float) for value in (low, high, guess)), none, none, none)
+    root: Array = jax.lax.while_loop(unfinished, step, start)[3]
+    return root
 
 
 def at_root(

@@ -27,7 +27,7 @@ from propmdao.aerodynamics.wake import (
     momentum_induced_velocity,
     wake_azimuths,
 )
-from propmdao.records import PointLoads, record
+from propmdao.records import PointLoads, Scalar, record
 
 # Six turns from 10 deg steps at the blade to 30 deg. Against sixteen turns at 2 to 10 deg, with
 # seven times the segments: thrust within 0.1 %, torque within 0.2 %, in hover 1.2 %
@@ -87,16 +87,16 @@ class Flow:
     """
 
     lattice: LatticeGeometry
-    radius: Array
-    rotation_speed: Array
-    speed: Array
-    density: Array
+    radius: Scalar
+    rotation_speed: Scalar
+    speed: Scalar
+    density: Scalar
 
 
 _Params = tuple[Flow, Array, Array]  # with the wake's ages and the thrust guessed
 
 
-def induced_velocity(flow: Flow, thrust: Array) -> Array:
+def induced_velocity(flow: Flow, thrust: Scalar) -> Array:
     """Induced velocity at the disk by momentum theory.
 
     Parameters
@@ -116,7 +116,7 @@ def induced_velocity(flow: Flow, thrust: Array) -> Array:
 
 
 def loads_at(
-    flow: Flow, n_blades: int, induced_velocity: Array, wake_ages: Array = WAKE_AGES
+    flow: Flow, n_blades: int, induced_velocity: Scalar, wake_ages: Array | np.ndarray = WAKE_AGES
 ) -> LatticeLoads:
     """Loads of blade 1 in the wake that a given induced velocity transports.
 
@@ -148,12 +148,12 @@ def loads_at(
 def solve_steady(
     nodes: Array,
     n_blades: int,
-    radius: Array,
-    rotation_speed: Array,
-    speed: Array,
-    density: Array,
-    wake_ages: Array = WAKE_AGES,
-    thrust_guess: Array = 0.0,
+    radius: Scalar,
+    rotation_speed: Scalar,
+    speed: Scalar,
+    density: Scalar,
+    wake_ages: Array | np.ndarray = WAKE_AGES,
+    thrust_guess: Scalar = 0.0,
 ) -> SteadySolution:
     """Solve the steady lattice with its own wake.
 

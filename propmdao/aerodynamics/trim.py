@@ -5,6 +5,7 @@ from __future__ import annotations
 import dataclasses
 from collections.abc import Callable
 from functools import partial
+from typing import Any
 
 import jax
 import jax.numpy as jnp
@@ -14,6 +15,7 @@ from jax import Array
 from propmdao.aerodynamics.lattice_loads import lattice_geometry
 from propmdao.aerodynamics.roots import at_root
 from propmdao.aerodynamics.steady import Flow, induced_velocity, loads_at, solve_steady
+from propmdao.records import Scalar
 
 _TOLERANCE = 1.0e-8
 _MAX_EVALUATIONS = 60
@@ -110,12 +112,12 @@ def rotation_speed_for_thrust(
 def rotation_speed_by_interpolation(
     nodes: Array,
     n_blades: int,
-    radius: Array,
-    speed: Array,
-    density: Array,
-    thrust_required: Array,
-    low: Array,
-    high: Array,
+    radius: Scalar,
+    speed: Scalar,
+    density: Scalar,
+    thrust_required: Scalar,
+    low: Scalar,
+    high: Scalar,
 ) -> Array:
     """Rotation speed by the thesis' rule: thrust linear between the two bounds.
 
@@ -145,12 +147,12 @@ def rotation_speed_by_interpolation(
 def solve_rotation_speed(
     nodes: Array,
     n_blades: int,
-    radius: Array,
-    speed: Array,
-    density: Array,
-    thrust_required: Array,
-    low: Array,
-    high: Array,
+    radius: Scalar,
+    speed: Scalar,
+    density: Scalar,
+    thrust_required: Scalar,
+    low: Scalar,
+    high: Scalar,
 ) -> tuple[Array, Array, Array]:
     """Rotation speed for a thrust, and how much thrust is missing at either bound.
 
@@ -185,7 +187,7 @@ def solve_rotation_speed(
         flow = dataclasses.replace(flow, rotation_speed=omega)
         return n_blades * loads_at(flow, n_blades, induced_velocity(flow, required)).thrust
 
-    def missing(params: _Params, omega: Array, thrust: Array) -> Array:
+    def missing(params: _Params, omega: Array, thrust: Scalar) -> Array:
         return params[1] - thrust
 
     def solve(params: _Params) -> tuple[Array, tuple[Array, Array]]:
@@ -201,7 +203,7 @@ def solve_rotation_speed(
 
 
 def _bracketed_search(
-    missing: Callable[[Array], Array], thrust: Array, low: Array, high: Array
+    missing: Callable[[Array], Array], thrust: Scalar, low: Scalar, high: Scalar
 ) -> tuple[Array, tuple[Array, Array]]:
     """Root of the missing thrust, and its values at either bound, in three to six trials.
 
@@ -209,14 +211,14 @@ def _bracketed_search(
     two trials, gives the next (it nearly is one); where that leaves the bracket, bisect.
     """
 
-    def unfinished(state: tuple[Array, ...]) -> Array:
+    def unfinished(state: Any) -> Array:
         count, _, _, x, (x1, _), (x2, _), (at_low, at_high) = state
         bracketed = (count < 2) | ((at_low >= 0.0) & (at_high <= 0.0))
         # A secant step leaves an error of about the product of the last two.
         moved = (count < 3) | (jnp.abs((x - x1) * (x1 - x2)) > _TOLERANCE * x * x)
         return (count < _MAX_EVALUATIONS) & bracketed & moved
 
-    def step(state: tuple[Array, ...]) -> tuple[Array, ...]:
+    def step(state: Any) -> Any:
         count, lo, hi, x, (x1, f1), _, (at_low, at_high) = state
         f = missing(x)
         at_low = jnp.where(count == 0, f, at_low)
@@ -229,12 +231,12 @@ def _bracketed_search(
         return count + 1, lo, hi, following, (x, f), (x1, f1), (at_low, at_high)
 
     zero = jnp.zeros_like(low)
-    state = (0, low, high, low, (zero, zero), (zero, zero), (zero, zero))
+    state: Any = (0, low, high, low, (zero, zero), (zero, zero), (zero, zero))
     _, _, _, omega, _, _, ends = jax.lax.while_loop(unfinished, step, state)
     return omega, ends
 
 
-def _where_linear_ct_gives(thrust: Array, x1: Array, t1: Array, x2: Array, t2: Array) -> Array:
+def _where_linear_ct_gives(thrust: Scalar, x1: Array, t1: Array, x2: Array, t2: Array) -> Array:
     """Rotation speed for a thrust when T / Omega^2 = a + b / Omega holds through two points."""
     u1, u2 = 1.0 / x1, 1.0 / x2
     c1, c2 = t1 * u1**2, t2 * u2**2

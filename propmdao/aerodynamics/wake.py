@@ -5,9 +5,11 @@ Momentum theory gives the induced velocity w at the disk from the thrust,
     T = 2 rho A w (V + w)                                           (Glauert 1935, eq. I 1.13)
 
 and 2 w far downstream. In between the axial induced velocity follows that of the semi-infinite
-vortex cylinder on its axis, w (1 + s / sqrt(1 + s^2)) (McCormick 1967, eq. 4-48), with s the distance
-travelled in radii at the mean speed V + 1.5 w. The stream contracts by continuity.
-Limits: w is uniform over the disk, swirl and roll-up of the tip vortex are left out.
+vortex cylinder on its axis, w (1 + s / sqrt(1 + s^2)) (McCormick 1967, eq. 4-48), with s the
+distance travelled in radii at the mean speed V + 1.5 w. The stream contracts by continuity.
+Limits: w is uniform over the disk, swirl and roll-up of the tip vortex are left out, and the edge
+of the stream, which moves at the mean of both sides, is carried as fast as the air inside: too fast
+in hover (docs/verification.md).
 """
 
 from __future__ import annotations
@@ -16,13 +18,15 @@ import jax.numpy as jnp
 import numpy as np
 from jax import Array
 
-# The discriminant of momentum theory is kept above this (fraction of tip speed)^2, smoothly, so that
-# a wake always leaves the disk: thrust below the windmilling limit, or none at all in hover.
+from propmdao.records import Scalar
+
+# The discriminant of momentum theory is kept above this (fraction of tip speed)^2, smoothly, so
+# that a wake always leaves the disk: thrust below the windmilling limit, or none at all in hover.
 _LEAST_SPEED_FRACTION = 5.0e-3
 
 
 def momentum_induced_velocity(
-    thrust: Array, speed: Array, tip_speed: Array, density: Array, disk_area: Array
+    thrust: Scalar, speed: Scalar, tip_speed: Scalar, density: Scalar, disk_area: Scalar
 ) -> Array:
     """Induced velocity at the disk by momentum theory.
 
@@ -78,10 +82,10 @@ def helical_wake(
     trailing_nodes: Array,
     ages: Array,
     n_blades: int,
-    radius: Array,
-    rotation_speed: Array,
-    speed: Array,
-    induced_velocity: Array,
+    radius: Scalar,
+    rotation_speed: Scalar,
+    speed: Scalar,
+    induced_velocity: Scalar,
 ) -> Array:
     """Trailing filaments of all blades.
 
@@ -106,11 +110,9 @@ def helical_wake(
     time = ages / rotation_speed
     s = time * mean_speed / radius
     root = jnp.sqrt(1.0 + s * s)
-    axial = (speed + induced_velocity) * time + induced_velocity * radius / mean_speed * (
-        root - 1.0
-    )
-    far = speed + induced_velocity * (1.0 + s / root)
-    contraction = jnp.sqrt((speed + induced_velocity) / far)
+    at_disk = speed + induced_velocity
+    axial = at_disk * time + induced_velocity * radius / mean_speed * (root - 1.0)
+    contraction = jnp.sqrt(at_disk / (at_disk + induced_velocity * s / root))
 
     r0 = jnp.hypot(trailing_nodes[:, 0], trailing_nodes[:, 1])
     psi0 = jnp.arctan2(trailing_nodes[:, 1], trailing_nodes[:, 0])
@@ -122,7 +124,7 @@ def helical_wake(
 
 
 def core_radius(
-    ages: Array, rotation_speed: Array, kinematic_viscosity: Array, initial: Array
+    ages: Array, rotation_speed: Scalar, kinematic_viscosity: Scalar, initial: Scalar
 ) -> Array:
     """Core radius of the wake segments, growing by (eddy) diffusion.
 

@@ -78,8 +78,8 @@ def lattice_nodes(blade: Blade, span: SpanInterpolation, n_chordwise: int) -> ja
     Notes
     -----
     With the vortex at 1/4 and the collocation point at 3/4 of each panel a flat section has exactly
-    the lift of thin-airfoil theory, however its panels are spaced. Cosine spacing is for camber near
-    the edges: 8 panels leave 0.06 deg of the zero-lift angle of an E63, equal panels 0.5 deg.
+    the lift of thin-airfoil theory, however its panels are spaced. Cosine spacing is for camber
+    near the edges: 8 panels leave 0.06 deg of the zero-lift angle of an E63, equal panels 0.5 deg.
     """
     fraction = lattice_chord_fraction(n_chordwise)
     operator = jnp.asarray(chord_interpolation(np.arccos(1.0 - 2.0 * fraction)))

@@ -1,4 +1,4 @@
-"""How far the default lattice and wake are from finer ones: the numbers docs/verification.md shows."""
+"""How far the default lattice and wake are from finer ones: as docs/verification.md shows."""
 
 import numpy as np
 import pytest
