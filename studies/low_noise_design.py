@@ -68,8 +68,7 @@ No viscous drag, so torque is low. Tones only, no broadband noise."""
 
 def build_problem(torque_limit: float) -> om.Problem:
     """Blade to noise, with design variables, constraint and objective."""
-    prob = om.Problem(reports=False)
-    prob.model = PropellerGroup(
+    propeller = PropellerGroup(
         propeller=START,
         observers=arc(DISTANCE, MICROPHONE),
         fidelity=FIDELITY,
@@ -77,13 +76,16 @@ def build_problem(torque_limit: float) -> om.Problem:
         camber=CL_I,
         design_distributions={name: list(AT.values()) for name in BOUNDS},
     )
+    prob = om.Problem(reports=False)
+    prob.model.add_subsystem("propeller", propeller, promotes=["*"])
+    prob.model.set_input_defaults("speed", SPEED, units="m/s")
+    prob.model.set_input_defaults("density", DENSITY, units="kg/m**3")
+    prob.model.set_input_defaults("thrust_required", THRUST, units="N")
     for name, bounds in BOUNDS.items():
         prob.model.add_design_var(f"{name}_cp", **bounds)
     prob.model.add_constraint("torque", upper=torque_limit, ref=torque_limit)
     prob.model.add_objective("oaspl_db")
     prob.setup()
-    for name, value in (("speed", SPEED), ("density", DENSITY), ("thrust_required", THRUST)):
-        prob.set_val(name, value)
     return prob
 
 
