@@ -131,6 +131,9 @@ frequency
             ],
             promotes_outputs=["*"],
         )
+        if trimmed:
+            # The thrust that the trim reaches is also where the loads start looking.
+            self.set_input_defaults("thrust_required", 1.0, units="N")
         self.add_subsystem(
             "acoustics",
             AcousticsComp(

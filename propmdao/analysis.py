@@ -63,6 +63,7 @@ class Analysis:
             rpm, speed, rho, J, thrust, torque, shaft_power, CT, CQ, CP, eta, converged and a list
             of observers with their levels.
         """
+        levels = jax.tree.map(np.asarray, _levels(self.tones))
         return {
             "rpm": self.rpm,
             "speed": self.speed,
@@ -76,28 +77,21 @@ class Analysis:
             "CP": float(self.coefficients.CP),
             "eta": float(self.coefficients.eta),
             "converged": bool(self.steady.converged),
-            "observers": [self._observer(i) for i in range(len(self.observers))],
+            "observers": [self._observer(i, levels) for i in range(len(self.observers))],
         }
 
-    def _observer(self, i: int) -> dict[str, Any]:
-        frequency = self.tones.frequency_hz
-        parts = {
-            "": self.tones.total[i],
-            "thickness_": self.tones.thickness[i],
-            "loading_": self.tones.loading[i],
-        }
-        overall = {f"oaspl_{part}db": float(oaspl_db(p)) for part, p in parts.items()}
-        levels = {f"spl_{part}db": np.asarray(spl_db(p)) for part, p in parts.items()}
-        center, band = third_octave(frequency, parts[""])
+    def _observer(self, i: int, levels: dict[str, np.ndarray]) -> dict[str, Any]:
+        frequency = np.asarray(self.tones.frequency_hz)
+        center, band = third_octave(frequency, self.tones.total[i])
+        spectra = [name for name in levels if name.startswith("spl")]
         return {
             "elevation_deg": float(self.observers[i, 1]),
             "radius": float(self.observers[i, 0]),
-            "spl_bpf_db": float(levels["spl_db"][0]),
-            **overall,
-            "oaspl_dba": float(oaspl_dba(frequency, parts[""])),
+            "spl_bpf_db": float(levels["spl_db"][i, 0]),
+            **{name: float(levels[name][i]) for name in levels if name not in spectra},
             "harmonics": [
                 {"m": m + 1, "frequency_hz": float(f)}
-                | {name: float(level[m]) for name, level in levels.items()}
+                | {name: float(levels[name][i, m]) for name in spectra}
                 for m, f in enumerate(frequency)
             ],
             "third_octave": [
@@ -105,6 +99,15 @@ class Analysis:
                 for f, level in zip(center, band, strict=True)
             ],
         }
+
+
+@jax.jit
+def _levels(tones: Tones) -> dict[str, Array]:
+    """Levels of the tones by their key: of all observers, and harmonics where it begins by spl."""
+    parts = {"": tones.total, "thickness_": tones.thickness, "loading_": tones.loading}
+    levels = {f"oaspl_{part}db": oaspl_db(pressure) for part, pressure in parts.items()}
+    levels |= {f"spl_{part}db": spl_db(pressure) for part, pressure in parts.items()}
+    return levels | {"oaspl_dba": oaspl_dba(tones.frequency_hz, tones.total)}
 
 
 def analyze(

@@ -217,3 +217,11 @@ def test_entry_points_name_what_there_is(checkout):
         for target in project["entry-points"][group].values():
             module, name = target.split(":")
             assert issubclass(getattr(importlib.import_module(module), name), base)
+
+
+def test_the_group_is_a_model_by_itself(propeller, small):
+    group = PropellerGroup(propeller=propeller, observers=arc(1.905, -45.0), fidelity=small)
+    prob = om.Problem(group, reports=False)
+    prob.setup()
+    prob.run_model()
+    assert_allclose(prob.get_val("thrust"), 1.0, rtol=1e-6)
