@@ -46,13 +46,16 @@ def distribution() -> metadata.Distribution:
 
 def test_every_package_folder_is_listed(checkout: Path, project: dict[str, Any]) -> None:
     # setuptools drops a package that is not listed without a word.
-    folders = {
-        ".".join(file.parent.relative_to(root).parts)
-        for root, top in ((checkout, "propmdao"), (checkout, "components"))
-        for file in (root / top).rglob("__init__.py")
-        if "propmdao/components" not in file.as_posix()
+    physics = {
+        file.parent.relative_to(checkout)
+        for file in (checkout / "propmdao").rglob("__init__.py")
+        if not file.is_relative_to(checkout / "propmdao" / "components")  # through the link
     }
-    packages = {re.sub("^components", "propmdao.components", folder) for folder in folders}
+    layer = {
+        Path("propmdao") / file.parent.relative_to(checkout)
+        for file in (checkout / "components").rglob("__init__.py")
+    }
+    packages = {".".join(folder.parts) for folder in physics | layer}
     assert sorted(packages) == project["tool"]["setuptools"]["packages"]
 
 
