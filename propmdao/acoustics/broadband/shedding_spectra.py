@@ -1,0 +1,184 @@
+"""Shapes G1 to G5: laminar vortex shedding and vortices shed by a blunt trailing edge.
+
+Symbols and equation numbers are those of Brooks, Pope and Marcolini, NASA RP-1218 (1989). Where
+their pieces meet at an angle, the corner is rounded, by less than 0.15 dB. Angles are in degrees,
+levels in dB.
+"""
+
+from __future__ import annotations
+
+import jax.numpy as jnp
+from jax import Array
+
+from propmdao.acoustics.broadband.smooth import ramp, smooth_step
+
+_LOG_CORNER = 0.01
+_RATIO_CORNER = 0.01  # of h / delta*
+_LEVEL_CORNER = 0.5  # dB
+
+
+def laminar_shape(x: Array) -> Array:
+    """Spectral shape G1 (equation 57).
+
+    Parameters
+    ----------
+    x : array
+        log10 of the Strouhal number over its peak value.
+
+    Returns
+    -------
+    array
+        Level [dB].
+    """
+    x = jnp.abs(x)
+    inner = jnp.minimum(x, 0.0683)  # arc and line meet there with one slope
+    arc = -5.076 + jnp.sqrt(2.484 - 506.25 * inner**2)
+    return arc - 98.409 * (x - inner) + (98.409 - 39.8) * ramp(x - 0.22375, _LOG_CORNER)
+
+
+def laminar_reynolds_level(log_reynolds: Array, degrees: Array) -> Array:
+    """Level over the Reynolds number, G2 (equations 58, 59).
+
+    Parameters
+    ----------
+    log_reynolds : array
+        log10 of the Reynolds number of the chord.
+    degrees : array
+        Angle of attack [deg], not negative.
+
+    Returns
+    -------
+    array
+        Level [dB], 0 at the Reynolds number of the strongest shedding.
+    """
+    log_loudest = 4.978 + 0.215 * degrees - (0.215 - 0.120) * ramp(degrees - 3.0, 0.25)
+    x = jnp.abs(log_reynolds - log_loudest)
+    beyond = ramp(x - 0.245, _LOG_CORNER)
+    steep = -65.188 * beyond - (77.852 - 65.188) * ramp(x - 0.4898, _LOG_CORNER)
+    return -114.052 * (x - beyond) ** 2 + steep
+
+
+def laminar_angle_level(degrees: Array) -> Array:
+    """Level over the angle, G3 (equation 60).
+
+    Parameters
+    ----------
+    degrees : array
+        Angle of attack [deg], not negative.
+
+    Returns
+    -------
+    array
+        Level [dB].
+    """
+    return 171.04 - 3.03 * degrees
+
+
+def laminar_strouhal_peak(log_reynolds: Array, degrees: Array) -> Array:
+    """log10 of the peak Strouhal number St' (equations 55, 56).
+
+    Parameters
+    ----------
+    log_reynolds : array
+        log10 of the Reynolds number of the chord.
+    degrees : array
+        Angle of attack [deg], not negative.
+
+    Returns
+    -------
+    array
+        log10 of St'_peak.
+    """
+    start = jnp.log10(1.3e5)
+    end = start + jnp.log10(0.28 / 0.18) / 0.3931  # Re 4.0e5
+    rise = ramp(log_reynolds - start, _LOG_CORNER) - ramp(log_reynolds - end, _LOG_CORNER)
+    return jnp.log10(0.18) + 0.3931 * rise - 0.04 * degrees
+
+
+def blunt_strouhal_peak(ratio: Array, edge_degrees: Array) -> Array:
+    """Peak Strouhal number St''' (equation 72).
+
+    Parameters
+    ----------
+    ratio : array
+        Trailing-edge thickness over the mean displacement thickness, h / delta*.
+    edge_degrees : array
+        Angle between the surfaces at the trailing edge, Psi [deg].
+
+    Returns
+    -------
+    array
+        St'''_peak.
+    """
+    inverse = 1 / jnp.maximum(ratio, 0.15)  # not used below 0.19
+    thick = (0.212 - 0.0045 * edge_degrees) / (1 + 0.235 * inverse - 0.0132 * inverse**2)
+    thin = 0.1 * ratio + 0.095 - 0.00243 * edge_degrees
+    return thin + smooth_step(ratio - 0.2, _RATIO_CORNER) * (thick - thin)
+
+
+def blunt_level(ratio: Array, edge_degrees: Array) -> Array:
+    """Peak level G4 (equation 74).
+
+    Parameters
+    ----------
+    ratio : array
+        h / delta*, positive.
+    edge_degrees : array
+        Psi [deg].
+
+    Returns
+    -------
+    array
+        Level [dB].
+    """
+    short_of = (169.7 - 157.5) / 17.5 - jnp.log10(ratio)  # of h / delta* = 5
+    return 169.7 - 1.114 * edge_degrees - 17.5 * ramp(short_of, _LOG_CORNER)
+
+
+def blunt_shape(eta: Array, ratio: Array, edge_degrees: Array) -> Array:
+    """Spectral shape G5 (equations 75 to 82), interpolated between Psi = 0 and 14 deg.
+
+    Parameters
+    ----------
+    eta : array
+        log10 of the Strouhal number over its peak value.
+    ratio : array
+        h / delta*.
+    edge_degrees : array
+        Psi [deg].
+
+    Returns
+    -------
+    array
+        Level [dB]. As in the report's program, neither above 0 nor above the curve of
+        h / delta* = 0.25.
+    """
+    wedge = _blunt_curve(eta, ratio)
+    plate = _blunt_curve(eta, 6.724 * ratio**2 - 4.019 * ratio + 1.107)  # 82
+    shape = plate + 0.0714 * edge_degrees * (wedge - plate)  # 75
+    broadest = _blunt_curve(eta, jnp.asarray(0.25))
+    for bound in (jnp.zeros(()), broadest):
+        shape = bound - ramp(bound - shape, _LEVEL_CORNER)
+    return shape
+
+
+def _blunt_curve(eta: Array, ratio: Array) -> Array:
+    """G5 at Psi = 14 deg (76, 77); at 0 deg with the ratio of equation 82."""
+
+    def bend(at: float) -> Array:
+        return ramp(ratio - at, _RATIO_CORNER)
+
+    mu = 0.1211 - 0.2175 * bend(0.25) + (0.2175 - 0.0308) * bend(0.62) + 0.0308 * bend(1.15)  # 78
+    m = 68.724 * bend(1.35 / 68.724) + (308.475 - 68.724) * bend(0.5)  # 79
+    m += (224.811 - 308.475) * bend(0.62) + (1583.28 - 224.811) * bend(1.15) - 1583.28 * bend(1.2)
+    steepness = jnp.sqrt(6.25 + (m * mu) ** 2)
+    eta_0 = -m * mu**2 / steepness  # 80
+    within = jnp.clip(eta, eta_0, 0.0)  # below, the tangent m eta + k (81)
+    rising = 2.5 * jnp.sqrt(1 - (within / mu) ** 2) - 2.5 + m * jnp.minimum(eta - eta_0, 0.0)
+    # The report's arc drops vertically onto its line at 0.03616. It is left where its slope is the
+    # line's, 0.137 dB above, and led down to the line.
+    leave, slope = 0.035298, -155.543
+    arc = jnp.sqrt(1.5625 - 1194.99 * jnp.square(jnp.clip(eta, 0.0, leave))) - 1.25
+    gap = 0.1366 * (1 - smooth_step(eta - leave - 0.0015, 0.0015))
+    falling = jnp.where(eta < leave, arc, slope * eta + 4.375 + gap)
+    return jnp.where(eta < 0, rising, falling)

@@ -1,0 +1,68 @@
+"""Corners rounded off: the report's switches for an optimiser.
+
+Each blend is exact outside a stated half width and has a continuous first derivative, so that the
+report's own numbers stand everywhere else.
+"""
+
+from __future__ import annotations
+
+import jax.numpy as jnp
+from jax import Array
+from jax.typing import ArrayLike
+
+
+def ramp(x: ArrayLike, half_width: float) -> Array:
+    """``max(x, 0)`` with its corner replaced by a parabola.
+
+    Parameters
+    ----------
+    x : array
+        Any shape.
+    half_width : float
+        Where the parabola ends; it lies at most a quarter of this above the corner.
+
+    Returns
+    -------
+    array
+        The same shape.
+    """
+    inside = jnp.clip(x, -half_width, half_width)
+    return (inside + half_width) ** 2 / (4 * half_width) + jnp.maximum(x - half_width, 0.0)
+
+
+def smooth_abs(x: ArrayLike, half_width: float) -> Array:
+    """``abs(x)`` with its corner replaced by a parabola, half of `half_width` at zero.
+
+    Parameters
+    ----------
+    x : array
+        Any shape.
+    half_width : float
+        Where the parabola ends.
+
+    Returns
+    -------
+    array
+        The same shape.
+    """
+    inside = jnp.clip(x, -half_width, half_width)
+    return (inside**2 / half_width + half_width) / 2 + jnp.maximum(jnp.abs(x) - half_width, 0.0)
+
+
+def smooth_step(x: ArrayLike, half_width: float) -> Array:
+    """Rise from 0 at ``-half_width`` to 1 at ``half_width``, level at both ends.
+
+    Parameters
+    ----------
+    x : array
+        Any shape.
+    half_width : float
+        Where the step ends.
+
+    Returns
+    -------
+    array
+        The same shape.
+    """
+    t = (jnp.clip(x, -half_width, half_width) / half_width + 1) / 2
+    return t * t * (3 - 2 * t)
