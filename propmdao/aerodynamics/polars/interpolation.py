@@ -1,0 +1,126 @@
+"""Piecewise cubic interpolation, C1 in its argument, as four nodes and four weights per point."""
+
+from __future__ import annotations
+
+import jax
+import jax.numpy as jnp
+
+#: How far past the ends of a table a clamped argument goes on, in end cells.
+MARGIN = 0.25
+
+
+def _hermite_weights(nodes: jax.Array, x: jax.Array) -> jax.Array:
+    """Weights of four node values for x between the middle two; slopes from three-point parabolas.
+
+    The slope at a node depends on that node and its two neighbours alone, so both cells that meet
+    there share it: the Catmull-Rom spline on uneven nodes.
+    """
+    h0, h, h2 = (nodes[:, k + 1] - nodes[:, k] for k in range(3))
+    t = (x - nodes[:, 1]) / h
+    value = (1.0 + 2.0 * t) * (1.0 - t) ** 2
+    left, right = t * (1.0 - t) ** 2 * h, t**2 * (t - 1.0) * h
+    left_before, left_after = -h / (h0 * (h0 + h)), h0 / (h * (h0 + h))
+    right_before, right_after = -h2 / (h * (h + h2)), h / (h2 * (h + h2))
+    return jnp.stack(
+        [
+            left * left_before,
+            value - left * (left_before + left_after) + right * right_before,
+            1.0 - value + left * left_after - right * (right_before + right_after),
+            right * right_after,
+        ],
+        axis=1,
+    )
+
+
+def _cell(nodes: jax.Array, x: jax.Array) -> jax.Array:
+    """Cell that holds x; the first or last one outside."""
+    return jnp.clip(jnp.searchsorted(nodes, x, side="right") - 1, 0, nodes.size - 2)
+
+
+def soft_clamp(nodes: jax.Array, x: jax.Array) -> jax.Array:
+    """Hold an argument to the range of its nodes without a kink.
+
+    Parameters
+    ----------
+    nodes : (n_nodes,) array
+        Rising nodes.
+    x : array
+        Arguments.
+
+    Returns
+    -------
+    array
+        `x` itself inside; outside it levels off within `MARGIN` of an end cell, C1.
+    """
+    low, high = nodes[0], nodes[-1]
+    below, above = MARGIN * (nodes[1] - low), MARGIN * (high - nodes[-2])
+    inside = jnp.clip(x, low, high)
+    under = below * jnp.tanh(jnp.minimum(x - low, 0.0) / below)
+    over = above * jnp.tanh(jnp.maximum(x - high, 0.0) / above)
+    return inside + under + over
+
+
+def clamped_stencil(nodes: jax.Array, x: jax.Array) -> tuple[jax.Array, jax.Array]:
+    """Nodes and weights for arguments held to the range of the nodes by `soft_clamp`.
+
+    Parameters
+    ----------
+    nodes : (n_nodes,) array
+        Rising nodes, at least two.
+    x : (n,) array
+        Arguments.
+
+    Returns
+    -------
+    index, weight : (n, 4) arrays
+        Values at `x` are the sum of weight * values[index]; C1 in `x`.
+    """
+    x = soft_clamp(nodes, x)
+    cell, last = _cell(nodes, x), nodes.size - 1
+    # Beyond each end stands a node whose value continues the end cell's straight line.
+    ghosts = jnp.concatenate([2 * nodes[:1] - nodes[1:2], nodes, 2 * nodes[-1:] - nodes[-2:-1]])
+    weight = _hermite_weights(ghosts[cell[:, None] + jnp.arange(4)], x)
+    first, final = (cell == 0) * weight[:, 0], (cell == last - 1) * weight[:, 3]
+    weight = weight + jnp.stack([-first, 2 * first - final, 2 * final - first, -final], axis=1)
+    return jnp.clip(cell[:, None] + jnp.arange(-1, 3), 0, last), weight
+
+
+def periodic_stencil(nodes: jax.Array, angle: jax.Array) -> tuple[jax.Array, jax.Array]:
+    """Nodes and weights for angles of any size.
+
+    Parameters
+    ----------
+    nodes : (n_nodes,) array
+        Rising angles from -pi to pi, both included.
+    angle : (n,) array
+        Angles [rad].
+
+    Returns
+    -------
+    index, weight : (n, 4) arrays
+        Values at `angle` are the sum of weight * values[index]; C1 and periodic.
+    """
+    turn = 2.0 * jnp.pi
+    x = angle - turn * jnp.round(angle / turn)
+    cell = _cell(nodes, x)
+    around = jnp.concatenate([nodes[-2:-1] - turn, nodes, nodes[1:2] + turn])
+    weight = _hermite_weights(around[cell[:, None] + jnp.arange(4)], x)
+    return (cell[:, None] + jnp.arange(-1, 3)) % (nodes.size - 1), weight
+
+
+def dense(index: jax.Array, weight: jax.Array, n_nodes: int) -> jax.Array:
+    """Write a stencil as rows of a matrix.
+
+    Parameters
+    ----------
+    index, weight : (n, 4) arrays
+        A stencil.
+    n_nodes : int
+        Number of nodes.
+
+    Returns
+    -------
+    (n, n_nodes) array
+        Matrix from node values to values at the arguments.
+    """
+    return jnp.einsum("nk,nkm->nm", weight, jax.nn.one_hot(index, n_nodes, dtype=weight.dtype))

@@ -1,0 +1,170 @@
+"""The polars of a described propeller."""
+
+from __future__ import annotations
+
+import functools
+import re
+from collections.abc import Mapping
+from pathlib import Path
+
+import jax.numpy as jnp
+import numpy as np
+
+from propmdao.aerodynamics.polars.family import SectionPolars, shape_values
+from propmdao.aerodynamics.polars.high_angle import ALPHA, FloatArray
+from propmdao.aerodynamics.polars.interpolation import clamped_stencil, dense
+from propmdao.aerodynamics.polars.neuralfoil_tables import (
+    REYNOLDS,
+    neuralfoil_grid,
+    neuralfoil_installed,
+)
+from propmdao.aerodynamics.polars.shipped import (
+    CAMBER,
+    CLARKY_SHARES,
+    THICKNESS,
+    limits,
+    shape,
+    shipped_tables,
+)
+from propmdao.aerodynamics.polars.table import PolarError, PolarTable
+from propmdao.geometry.airfoil_library import find_airfoil
+from propmdao.propeller import Propeller
+
+
+def polars_for(propeller: Propeller, own: Mapping[str, PolarTable] | None = None) -> SectionPolars:
+    """Find the polars of a propeller's sections.
+
+    Parameters
+    ----------
+    propeller : Propeller
+        The propeller.
+    own : dict of PolarTable, optional
+        A table of one section by the airfoil's name in the propeller, or its file's name without
+        folder and ending; it goes before the catalogue. It is taken at any camber and thickness:
+        a design that changes them needs polars that know them.
+
+    Returns
+    -------
+    SectionPolars
+        Polars of E63, Clark-Y, their blends and NACA 4-digit sections with their camber at 0.4 c
+        from the catalogue; of other sections from NeuralFoil, where it is installed (about 15 s
+        per airfoil).
+
+    Raises
+    ------
+    PolarError
+        If an airfoil has no polars; the message says how to supply them.
+    """
+    names = [name for _, name in propeller.airfoils]
+    sources: list[str] = []
+    given: dict[str, tuple[FloatArray, FloatArray]] = {}
+    for name in names:
+        user = _own_table(name, own or {})
+        sources.append(_catalogue_shape(name) if user is None else f"{name} of the user")
+        if user is not None:
+            given[sources[-1]] = np.asarray(user.log_re), np.asarray(user.values)
+    weights = _shape_weights(propeller, sources)
+    found = [given.get(key) or (np.log(REYNOLDS), _family_values(key)) for key in weights]
+    log_re = functools.reduce(_merged, [grid for grid, _ in found])
+    resampled = [_resampled(grid, table, log_re) for grid, table in found]
+    camber, thickness = np.concatenate([-CAMBER[:0:-1], CAMBER]), THICKNESS
+    if given.keys() == weights.keys():
+        camber, thickness = np.array([-1.0, 1.0]), np.array([0.0, 1.0])
+    full = (camber.size, thickness.size, 3, log_re.size, ALPHA.size)
+    return SectionPolars(
+        camber=jnp.asarray(camber),
+        thickness=jnp.asarray(thickness),
+        log_re=jnp.asarray(log_re),
+        alpha=jnp.asarray(ALPHA),
+        values=jnp.asarray(np.stack([np.broadcast_to(one, full) for one in resampled])),
+        weights=jnp.asarray(np.stack(list(weights.values()), axis=1)),
+    )
+
+
+def _own_table(name: str, own: Mapping[str, PolarTable]) -> PolarTable | None:
+    """The user's table of an airfoil."""
+    table = own.get(name, own.get(Path(name).stem))
+    if table is not None and (table.values.shape[0] != 1 or table.alpha.shape != ALPHA.shape):
+        raise PolarError(
+            f"the table of airfoil '{name}' must hold one section as read_polars and read_c81 make "
+            f"it; its values are {table.values.shape}"
+        )
+    return table
+
+
+def _catalogue_shape(name: str) -> str:
+    """Shape of the catalogue that an airfoil has, or its own name if NeuralFoil can make it."""
+    if name in CLARKY_SHARES:
+        return name
+    if re.fullmatch(r"naca(00|\d4)\d\d", name):
+        return "naca4"
+    if neuralfoil_installed():
+        return name
+    raise PolarError(
+        f"airfoil '{name}' has no polars in the catalogue: give polar files of it "
+        f"(polars_for(propeller, own={{'{Path(name).stem}': read_polars(...)}})), or install "
+        "NeuralFoil, which makes them: pip install 'propmdao[polars]'"
+    )
+
+
+def _shape_weights(propeller: Propeller, sources: list[str]) -> dict[str, FloatArray]:
+    """Share of each shape in each station, (n_stations,) by shape, those in use alone."""
+    position = [at for at, _ in propeller.airfoils]
+    unit = np.eye(len(position))
+    share = np.stack([np.interp(propeller.r_over_R, position, one) for one in unit])
+    # The zero-lift angle follows the camber line, so shapes count by what they give to it.
+    camber = [abs(find_airfoil(name).max_camber) for _, name in propeller.airfoils]
+    amount = share * np.array(camber)[:, None]
+    total = amount.sum(axis=0)
+    weight = np.where(total > 0.0, amount / np.where(total > 0.0, total, 1.0), share)
+
+    def of(rows: FloatArray, source: str) -> FloatArray:
+        picked: FloatArray = rows[[k for k, name in enumerate(sources) if name == source]].sum(0)
+        return picked
+
+    shapes = {source: of(weight, source) for source in sources}
+    if {"e63", "clarky"} <= shapes.keys():
+        both, last = shapes["e63"] + shapes["clarky"], of(share, "clarky")
+        shared = last + of(share, "e63")
+        blend = np.where(shared > 0.0, last / np.where(shared > 0.0, shared, 1.0), 0.0)
+        nodes = np.array(list(CLARKY_SHARES.values()))
+        for name, hat in zip(CLARKY_SHARES, np.eye(nodes.size), strict=True):
+            shapes[name] = both * np.interp(blend, nodes, hat)
+    return shapes
+
+
+def _family_values(source: str) -> FloatArray:
+    """Tables of a shape of the catalogue, or of any airfoil by NeuralFoil."""
+    shipped = shipped_tables().values
+    if source in shipped:
+        return shipped[source]
+    section = find_airfoil(source)
+    peak = section.max_camber
+    # Camber added to a flat section has the mean line that `Blade` gives it.
+    camber = section.camber / peak if peak else shape("naca4")[0]
+    thickness = section.thickness / section.max_thickness
+    return _neuralfoil_values(camber.tobytes(), thickness.tobytes())
+
+
+@functools.lru_cache(maxsize=8)
+def _neuralfoil_values(camber: bytes, thickness: bytes) -> FloatArray:
+    """Tables of a shape by NeuralFoil; by its bytes, so that a changed file is a new shape."""
+    shapes = np.frombuffer(camber), np.frombuffer(thickness)
+    coefficients, confidence = neuralfoil_grid(*shapes, CAMBER, THICKNESS)
+    return shape_values(coefficients, *limits(coefficients, confidence))
+
+
+def _merged(one: FloatArray, other: FloatArray) -> FloatArray:
+    """Nodes of both grids, without those that nearly coincide."""
+    nodes = np.sort(np.concatenate([one, other]))
+    return nodes[np.concatenate([[True], np.diff(nodes) > 0.005])]
+
+
+def _resampled(log_re: FloatArray, values: FloatArray, wanted: FloatArray) -> FloatArray:
+    """Values at other Reynolds numbers, held at the ends; the axis before the last."""
+    if np.array_equal(log_re, wanted):
+        return values
+    inside = jnp.clip(jnp.asarray(wanted), log_re[0], log_re[-1])
+    operator = np.asarray(dense(*clamped_stencil(jnp.asarray(log_re), inside), log_re.size))
+    resampled: FloatArray = np.einsum("wr,...ra->...wa", operator, values)
+    return resampled

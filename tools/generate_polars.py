@@ -1,0 +1,21 @@
+"""Make the polar tables of the catalogue; needs the extra `polars`.
+
+    python tools/generate_polars.py [FILE]
+
+The file records NeuralFoil's version and settings; the tables that ship are described by
+`propmdao.aerodynamics.polars.shipped.shipped_tables().settings`.
+"""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+from propmdao.aerodynamics.polars.shipped import generate, read_tables
+
+DEFAULT = Path(__file__).parents[1] / "propmdao" / "catalog" / "polars" / "sections.npz"
+
+if __name__ == "__main__":
+    path = Path(sys.argv[1]) if len(sys.argv) > 1 else DEFAULT
+    generate(path)
+    print(f"{path} ({path.stat().st_size} bytes): {read_tables(path).settings}")
