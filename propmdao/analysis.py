@@ -171,6 +171,7 @@ def analyze(
                 nodes, propeller.n_blades, radius, *air, thrust, rotation_bounds(radius, speed)
             )
         )
+        rpm = omega / _RAD_PER_S
     else:
         assert rpm is not None
         omega = rpm * _RAD_PER_S
@@ -190,7 +191,7 @@ def analyze(
         fidelity.n_harmonics,
     )
     of = coefficients(steady.thrust, steady.torque, omega, *air, propeller.diameter)
-    return Analysis(omega / _RAD_PER_S, *air, steady, of, points, heard)
+    return Analysis(float(rpm), *air, steady, of, points, heard)
 
 
 @partial(jax.jit, static_argnames=("n_chordwise", "n_contour"))

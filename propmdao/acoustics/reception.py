@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import jax
 import jax.numpy as jnp
 import numpy as np
 from jax import Array
@@ -75,7 +76,8 @@ def source_times(
     def distance(tau: float, t: float) -> NDArray[np.float64]:
         pose = poses(motion, np.array([tau]))
         y = np.asarray(pose.origin[0] + pose.rotation[0] @ center)
-        return np.asarray(np.linalg.norm(start + velocity * t - y, axis=1), np.float64)
+        apart = start + velocity * t - y
+        return np.sqrt(apart[:, 0] ** 2 + apart[:, 1] ** 2 + apart[:, 2] ** 2)
 
     def emitted(t: float, which: str) -> float:
         pick = np.max if which == "first" else np.min
@@ -131,12 +133,14 @@ def hear(arrival: Array, pressure: Array, start: Array, step: Array, n: int, eac
     d012, d123 = (d12 - d01) / (t2 - t0), (d23 - d12) / (t3 - t1)
     d0123 = (d123 - d012) / (t3 - t0)
     first = jnp.ceil((t1 - start) / step)
-    heard = jnp.zeros(n + 1)  # the last one takes what is outside the record
-    for k in range(each):
+
+    def add(k: int, heard: Array) -> Array:
         tick = first + k
         t = start + tick * step
         p = p0 + (t - t0) * (d01 + (t - t1) * (d012 + (t - t2) * d0123))
         inside = (tick >= 0) & (tick < n) & (t < t2)
         slot = jnp.where(inside, tick, n).astype(int)
-        heard = heard.at[slot].add(jnp.where(inside, p, 0.0), mode="promise_in_bounds")
-    return heard[:n]
+        return heard.at[slot].add(jnp.where(inside, p, 0.0), mode="promise_in_bounds")
+
+    # the last one takes what is outside the record
+    return jax.lax.fori_loop(0, each, add, jnp.zeros(n + 1))[:n]

@@ -7,7 +7,7 @@ import jax.numpy as jnp
 import numpy as np
 import pytest
 
-from propmdao.acoustics import arc, pressure_history
+from propmdao.acoustics import arc
 from propmdao.acoustics.advanced_time import loading_history, thickness_history
 from propmdao.acoustics.motion import blade_motions, rotation, translation
 from propmdao.acoustics.moving_sources import UnsteadySources, sample, unsteady_loads

@@ -3,8 +3,8 @@
 from propmdao.acoustics.broadband.boundary_layer import BoundaryLayer, boundary_layer
 from propmdao.acoustics.broadband.directivity import Radiation, radiation
 from propmdao.acoustics.broadband.rotor import StripFlow, rotor_self_noise
+from propmdao.acoustics.broadband.section import Section
 from propmdao.acoustics.broadband.self_noise import (
-    Section,
     SelfNoise,
     band_level_db,
     third_octave_centers,

@@ -17,8 +17,8 @@ from jax.typing import ArrayLike
 
 from propmdao.acoustics.broadband.boundary_layer import BoundaryLayer, Trip, boundary_layer
 from propmdao.acoustics.broadband.directivity import radiation
+from propmdao.acoustics.broadband.section import Section
 from propmdao.acoustics.broadband.self_noise import (
-    Section,
     SelfNoise,
     Tip,
     tip_noise,

@@ -8,14 +8,14 @@ from __future__ import annotations
 
 from typing import Literal, NamedTuple
 
+import jax
 import jax.numpy as jnp
 import numpy as np
 from jax import Array
 from jax.typing import ArrayLike
 from numpy.typing import NDArray
 
-from propmdao.acoustics.broadband import shedding_spectra as shedding
-from propmdao.acoustics.broadband import turbulent_spectra as turbulent
+from propmdao.acoustics.broadband import shedding_spectra, turbulent_spectra
 from propmdao.acoustics.broadband.boundary_layer import (
     BoundaryLayer,
     Trip,
@@ -24,44 +24,20 @@ from propmdao.acoustics.broadband.boundary_layer import (
     nonzero_speed,
 )
 from propmdao.acoustics.broadband.directivity import Radiation
-from propmdao.acoustics.broadband.smooth import ramp, smooth_step
+from propmdao.acoustics.broadband.section import (
+    Section,
+    blunt_strip,
+    laminar_strip,
+    turbulent_strip,
+)
+from propmdao.acoustics.broadband.smooth import ramp
 from propmdao.acoustics.levels import REFERENCE_PRESSURE
 from propmdao.records import record
 
 #: Shape of the blade tip seen from above the blade.
 Tip = Literal["rounded", "square"]
 
-_STALL = 1.0  # half width of the change from attached to separated flow [deg]
-_SHARP = 1e-9  # trailing-edge thickness over chord that a logarithm can take
 _SILENCE = 1e-20  # of the reference mean square: -200 dB
-
-
-@record
-class Section:
-    """Sections of a blade or wing and the flow over them; all arrays broadcast together.
-
-    Attributes
-    ----------
-    chord : array
-        Chord [m].
-    span : array
-        Length of the strip along the span [m].
-    speed : array
-        Speed of the flow normal to the span, induced velocities included [m/s].
-    angle_of_attack : array
-        Angle between this flow and the section's zero-lift direction [rad].
-    trailing_edge_thickness : array
-        Thickness h of the blunt trailing edge, 0 for a sharp one [m].
-    trailing_edge_angle : array
-        Angle Psi between upper and lower surface at the trailing edge [rad].
-    """
-
-    chord: Array
-    span: Array
-    speed: Array
-    angle_of_attack: Array
-    trailing_edge_thickness: Array
-    trailing_edge_angle: Array
 
 
 @record
@@ -176,45 +152,34 @@ def trailing_edge_noise(
     Around the stall the turbulent mechanisms change over within 1 deg to either side, where the
     report steps. Beyond it the report has no pressure and suction side.
     """
-    speed, chord = nonzero_speed(section.speed), nonzero_chord(section.chord)
-    mach, reynolds = speed / sound_speed, speed * chord / kinematic_viscosity
-    degrees, log_re = absolute_degrees(section.angle_of_attack), jnp.log10(reynolds)
-    log_f, log_u = jnp.log10(frequency_hz), jnp.log10(speed)
-    delta_p, delta_s = layer.displacement_pressure, layer.displacement_suction
-    log_delta_p, log_delta_s = jnp.log10(delta_p), jnp.log10(delta_s)
+    strip = turbulent_strip(section, layer, sound_speed, kinematic_viscosity)
+    laminar = laminar_strip(section, layer, kinematic_viscosity)
+    blunt = blunt_strip(section, layer)
+    # What belongs to a strip alone is not worked out again for every frequency and observer, as
+    # XLA would when it fuses all into one loop.
+    strip, laminar, blunt = jax.lax.optimization_barrier((strip, laminar, blunt))
 
-    stalled = smooth_step(degrees - turbulent.stall_angle(mach), _STALL)
-    edge = mach**5 * section.span
-    high, low = (1 - stalled) * edge * radiated.high, stalled * edge * radiated.low
-
-    st1, st1_mean, st2 = (jnp.log10(st) for st in turbulent.strouhal_peaks(mach, degrees))
-    st_p, st_s = log_delta_p - log_u, log_delta_s - log_u  # 31, less the frequency
-    k1 = turbulent.amplitude_k1(log_re)
-    k2 = k1 + turbulent.separation_amplitude(mach, degrees)
-    delta_k1 = turbulent.pressure_side_correction(
-        log_delta_p + log_u - jnp.log10(kinematic_viscosity), degrees
+    mach = nonzero_speed(section.speed) / sound_speed
+    log_f, edge = jnp.log10(frequency_hz), mach**5 * section.span
+    attached = (1 - strip.stalled) * edge * radiated.high
+    separated = strip.stalled * edge * radiated.low
+    a_p = turbulent_spectra.shape_a(log_f + strip.log_st_p, strip.a_r)
+    a_s = turbulent_spectra.shape_a(log_f + strip.log_st_s, strip.a_r)
+    b = turbulent_spectra.shape_b(log_f + strip.log_st_alpha, strip.b_r)
+    a_stalled = turbulent_spectra.shape_a(log_f + strip.log_st_alpha, strip.a_r_stalled)
+    separation = attached * _power(b + strip.level_alpha)  # 27
+    separation += separated * _power(a_stalled + strip.level_alpha)  # 30
+    g1 = shedding_spectra.laminar_shape(log_f + laminar.log_strouhal)
+    g5 = shedding_spectra.blunt_shape(
+        log_f + blunt.log_strouhal, blunt.wedge, blunt.plate, blunt.edge_degrees
     )
-    a_r, b_r = turbulent.interpolation_a(reynolds), turbulent.interpolation_b(reynolds)
-    a_r_stalled = turbulent.interpolation_a(3 * reynolds)
-    a_p = turbulent.shape_a(log_f + (st_p - st1), a_r)
-    a_s = turbulent.shape_a(log_f + (st_s - st1_mean), a_r)
-    b = turbulent.shape_b(log_f + (st_s - st2), b_r)
-    a_stalled = turbulent.shape_a(log_f + (st_s - st2), a_r_stalled)
-    attached = high * delta_s
-
-    pressure_side = high * delta_p * _power(a_p + (k1 - 3 + delta_k1))  # 25
+    shed = _power(g1 + laminar.level) if trip == "none" else jnp.zeros_like(separation)
     return EdgeNoise(
-        pressure_side=pressure_side,
-        suction_side=attached * _power(a_s + (k1 - 3)),  # 26
-        separation=attached * _power(b + k2) + low * delta_s * _power(a_stalled + k2),  # 27, 30
-        laminar_shedding=(
-            edge * radiated.high * _laminar(log_f - log_u, log_re, degrees, layer)
-            if trip == "none"
-            else jnp.zeros_like(pressure_side)
-        ),
-        bluntness=(
-            edge * jnp.sqrt(mach) * radiated.high * _blunt(log_f - log_u, section, chord, layer)
-        ),
+        pressure_side=attached * _power(a_p + strip.level_p),  # 25
+        suction_side=attached * _power(a_s + strip.level_s),  # 26
+        separation=separation,
+        laminar_shedding=edge * radiated.high * shed,  # 53
+        bluntness=edge * jnp.sqrt(mach) * radiated.high * _power(g5 + blunt.level),  # 70
     )
 
 
@@ -261,27 +226,6 @@ def tip_noise(
     strouhal = jnp.asarray(frequency_hz) * length / (mach_max * sound_speed)  # 62, 65
     shape = 126 - 30.5 * (jnp.log10(strouhal) + 0.3) ** 2
     return mach**2 * mach_max**3 * length**2 * radiated_high * _power(shape)  # 61
-
-
-def _laminar(log_f_u: Array, log_re: Array, degrees: Array, layer: BoundaryLayer) -> Array:
-    """Equation 53 without span, Mach number and directivity."""
-    log_delta = jnp.log10(layer.thickness_pressure)
-    g1 = shedding.laminar_shape(
-        log_f_u + (log_delta - shedding.laminar_strouhal_peak(log_re, degrees))
-    )
-    g2 = shedding.laminar_reynolds_level(log_re, degrees)
-    return layer.thickness_pressure * _power(g1 + (g2 + shedding.laminar_angle_level(degrees)))
-
-
-def _blunt(log_f_u: Array, section: Section, chord: Array, layer: BoundaryLayer) -> Array:
-    """Equation 70 without span, Mach number and directivity."""
-    h = section.trailing_edge_thickness + _SHARP * chord
-    mean = (layer.displacement_pressure + layer.displacement_suction) / 2  # 73
-    ratio, edge_degrees = h / mean, jnp.rad2deg(section.trailing_edge_angle)
-    peak = shedding.blunt_strouhal_peak(ratio, edge_degrees)
-    eta = log_f_u + (jnp.log10(h) - jnp.log10(peak))  # 71, 77
-    g5 = shedding.blunt_shape(eta, ratio, edge_degrees)
-    return h * _power(g5 + shedding.blunt_level(ratio, edge_degrees))
 
 
 def _power(level_db: Array) -> Array:

@@ -7,6 +7,8 @@ levels in dB.
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import jax.numpy as jnp
 from jax import Array
 
@@ -14,7 +16,7 @@ from propmdao.acoustics.broadband.smooth import ramp, smooth_step
 
 _LOG_CORNER = 0.01
 _RATIO_CORNER = 0.01  # of h / delta*
-_LEVEL_CORNER = 0.5  # dB
+_SHARE_CORNER = 0.05  # of the level at which a shape is bounded
 
 
 def laminar_shape(x: Array) -> Array:
@@ -135,15 +137,68 @@ def blunt_level(ratio: Array, edge_degrees: Array) -> Array:
     return 169.7 - 1.114 * edge_degrees - 17.5 * ramp(short_of, _LOG_CORNER)
 
 
-def blunt_shape(eta: Array, ratio: Array, edge_degrees: Array) -> Array:
-    """Spectral shape G5 (equations 75 to 82), interpolated between Psi = 0 and 14 deg.
+class BluntCurve(NamedTuple):
+    """What the shape of bluntness noise needs to know of a strip.
+
+    Attributes
+    ----------
+    mu, m, eta_0 : array
+        Width, slope of the rising line, and where line and arc meet (equations 78 to 80).
+    """
+
+    mu: Array | float
+    m: Array | float
+    eta_0: Array | float
+
+
+def blunt_curve(ratio: Array) -> BluntCurve:
+    """Curve of a trailing edge with Psi = 14 deg (equations 78 to 80).
+
+    Parameters
+    ----------
+    ratio : array
+        h / delta*; for Psi = 0 that of `plate_ratio`.
+
+    Returns
+    -------
+    BluntCurve
+        Its parameters.
+    """
+    # One ramp over all corners: (corners, ...) is a tenth of the code that eight of them make.
+    corners = jnp.array([1.35 / 68.724, 0.25, 0.5, 0.62, 1.15, 1.2])
+    bend = ramp(jnp.asarray(ratio)[..., None] - corners, _RATIO_CORNER)
+    mu = 0.1211 + bend @ jnp.array([0.0, -0.2175, 0.0, 0.2175 - 0.0308, 0.0308, 0.0])
+    m = bend @ jnp.array(
+        [68.724, 0.0, 308.475 - 68.724, 224.811 - 308.475, 1583.28 - 224.811, -1583.28]
+    )
+    return BluntCurve(mu, m, -m * mu**2 / jnp.sqrt(6.25 + (m * mu) ** 2))
+
+
+def plate_ratio(ratio: Array) -> Array:
+    """Ratio h / delta* of the curve that stands for a plate, Psi = 0 (equation 82).
+
+    Parameters
+    ----------
+    ratio : array
+        h / delta*.
+
+    Returns
+    -------
+    array
+        The ratio to be given to `blunt_curve`.
+    """
+    return 6.724 * ratio**2 - 4.019 * ratio + 1.107
+
+
+def blunt_shape(eta: Array, wedge: BluntCurve, plate: BluntCurve, edge_degrees: Array) -> Array:
+    """Spectral shape G5, interpolated between Psi = 0 and 14 deg (equations 75 to 77, 81).
 
     Parameters
     ----------
     eta : array
         log10 of the Strouhal number over its peak value.
-    ratio : array
-        h / delta*.
+    wedge, plate : BluntCurve
+        Curves at 14 and 0 deg.
     edge_degrees : array
         Psi [deg].
 
@@ -153,32 +208,34 @@ def blunt_shape(eta: Array, ratio: Array, edge_degrees: Array) -> Array:
         Level [dB]. As in the report's program, neither above 0 nor above the curve of
         h / delta* = 0.25.
     """
-    wedge = _blunt_curve(eta, ratio)
-    plate = _blunt_curve(eta, 6.724 * ratio**2 - 4.019 * ratio + 1.107)  # 82
-    shape = plate + 0.0714 * edge_degrees * (wedge - plate)  # 75
-    broadest = _blunt_curve(eta, jnp.asarray(0.25))
-    for bound in (jnp.zeros(()), broadest):
-        shape = bound - ramp(bound - shape, _LEVEL_CORNER)
-    return shape
+    falling = _falling_flank(eta)
+    at_plate, at_wedge = _rising_flank(eta, plate), _rising_flank(eta, wedge)
+    shape = at_plate + 0.0714 * edge_degrees * (at_wedge - at_plate)  # 75
+    broadest = _rising_flank(eta, _BROADEST)
+    # Rounded in proportion to the level: all curves meet at the peak, which must stay 0.
+    shape = broadest - ramp(broadest - shape, _SHARE_CORNER * jnp.abs(broadest) + 1e-9)
+    shape = jnp.minimum(shape, 0.0)  # only wedges of more than 14 deg reach above
+    return jnp.where(eta < 0, shape, falling)
 
 
-def _blunt_curve(eta: Array, ratio: Array) -> Array:
-    """G5 at Psi = 14 deg (76, 77); at 0 deg with the ratio of equation 82."""
-
-    def bend(at: float) -> Array:
-        return ramp(ratio - at, _RATIO_CORNER)
-
-    mu = 0.1211 - 0.2175 * bend(0.25) + (0.2175 - 0.0308) * bend(0.62) + 0.0308 * bend(1.15)  # 78
-    m = 68.724 * bend(1.35 / 68.724) + (308.475 - 68.724) * bend(0.5)  # 79
-    m += (224.811 - 308.475) * bend(0.62) + (1583.28 - 224.811) * bend(1.15) - 1583.28 * bend(1.2)
-    steepness = jnp.sqrt(6.25 + (m * mu) ** 2)
-    eta_0 = -m * mu**2 / steepness  # 80
+def _rising_flank(eta: Array, curve: BluntCurve) -> Array:
+    """Line and arc below the peak (76), 0 above it."""
+    mu, m, eta_0 = curve
     within = jnp.clip(eta, eta_0, 0.0)  # below, the tangent m eta + k (81)
-    rising = 2.5 * jnp.sqrt(1 - (within / mu) ** 2) - 2.5 + m * jnp.minimum(eta - eta_0, 0.0)
-    # The report's arc drops vertically onto its line at 0.03616. It is left where its slope is the
-    # line's, 0.137 dB above, and led down to the line.
+    return 2.5 * jnp.sqrt(1 - (within / mu) ** 2) - 2.5 + m * jnp.minimum(eta - eta_0, 0.0)
+
+
+def _falling_flank(eta: Array) -> Array:
+    """Arc and line above the peak (76), the same for all curves.
+
+    The report's arc drops vertically onto its line at 0.03616. It is left where its slope is the
+    line's, 0.137 dB above, and led down to the line.
+    """
     leave, slope = 0.035298, -155.543
     arc = jnp.sqrt(1.5625 - 1194.99 * jnp.square(jnp.clip(eta, 0.0, leave))) - 1.25
     gap = 0.1366 * (1 - smooth_step(eta - leave - 0.0015, 0.0015))
-    falling = jnp.where(eta < leave, arc, slope * eta + 4.375 + gap)
-    return jnp.where(eta < 0, rising, falling)
+    return jnp.where(eta < leave, arc, slope * eta + 4.375 + gap)
+
+
+# At h / delta* = 0.25, as plain numbers: nothing is computed on import.
+_BROADEST = BluntCurve(0.1211, 15.831, -0.0736924)

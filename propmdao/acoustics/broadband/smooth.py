@@ -11,23 +11,24 @@ from jax import Array
 from jax.typing import ArrayLike
 
 
-def ramp(x: ArrayLike, half_width: float) -> Array:
+def ramp(x: ArrayLike, half_width: ArrayLike) -> Array:
     """``max(x, 0)`` with its corner replaced by a parabola.
 
     Parameters
     ----------
     x : array
         Any shape.
-    half_width : float
-        Where the parabola ends; it lies at most a quarter of this above the corner.
+    half_width : float or array
+        Where the parabola ends, positive; it lies at most a quarter of this above the corner.
 
     Returns
     -------
     array
         The same shape.
     """
-    inside = jnp.clip(x, -half_width, half_width)
-    return (inside + half_width) ** 2 / (4 * half_width) + jnp.maximum(x - half_width, 0.0)
+    x, w = jnp.asarray(x), jnp.asarray(half_width)
+    inside = jnp.clip(x, -w, w)
+    return (inside + w) ** 2 / (4 * w) + jnp.maximum(x - w, 0.0)
 
 
 def smooth_abs(x: ArrayLike, half_width: float) -> Array:
