@@ -9,7 +9,7 @@ from jax import Array
 from numpy.typing import ArrayLike, NDArray
 from scipy.optimize import brentq
 
-from propmdao.acoustics.motion import Motion, poses
+from propmdao.acoustics.motion import Motion, place, poses
 from propmdao.records import record
 
 
@@ -36,6 +36,7 @@ def source_times(
     times: ArrayLike,
     sound_speed: float,
     step: float | None = None,
+    multiple: int = 32,
 ) -> NDArray[np.float64]:
     """Source times from which all of `points` are heard over all of the observers' times.
 
@@ -53,31 +54,35 @@ def source_times(
         [m/s].
     step : float, optional
         Of the source times [s]; that of the observer times by default.
+    multiple : int
+        The number of source times is rounded up to a multiple of this by later ones, so that the
+        blades of a rotor run the same compiled code; 1 where sources are not known any later.
 
     Returns
     -------
     (n_source_times,) array
-        Uniform [s]; a multiple of 32, some later than needed.
+        Uniform [s].
 
     Raises
     ------
     ValueError
-        If the points' centre moves at the speed of sound or faster, or the step is not positive.
+        If points move at the speed of sound or faster, or the step is not positive.
     """
-    clock, x = np.asarray(times, float), np.asarray(points, float).reshape(-1, 3)
+    clock = np.asarray(times, np.float64)
+    x = np.asarray(points, np.float64).reshape(-1, 3)
     step = float(clock[1] - clock[0]) if step is None else step
     if not step > 0:
         raise ValueError(f"step of the source times must be positive [s]; got {step:g}")
     center = 0.5 * (x.min(axis=0) + x.max(axis=0))
     # Every point is heard within radius / c of the centre, whatever the motion.
-    margin = np.linalg.norm(x - center, axis=1).max() / sound_speed
+    margin = float(np.linalg.norm(x - center, axis=1).max()) / sound_speed
     start, velocity = np.asarray(observers.position, float), np.asarray(observers.velocity, float)
 
     def distance(tau: float, t: float) -> NDArray[np.float64]:
         pose = poses(motion, np.array([tau]))
         y = np.asarray(pose.origin[0] + pose.rotation[0] @ center)
-        apart = start + velocity * t - y
-        return np.sqrt(apart[:, 0] ** 2 + apart[:, 1] ** 2 + apart[:, 2] ** 2)
+        apart: NDArray[np.float64] = start + velocity * t - y
+        return np.asarray(np.sqrt(np.sum(apart**2, axis=1)))
 
     def emitted(t: float, which: str) -> float:
         pick = np.max if which == "first" else np.min
@@ -88,15 +93,23 @@ def source_times(
         reach = float(np.max(distance(t, t))) / sound_speed + step
         for _ in range(60):
             if late(t - reach) < 0:
-                return brentq(late, t - reach, t, xtol=1e-3 * step)
+                return float(brentq(late, t - reach, t, xtol=1e-3 * step))
             reach *= 2
-        raise ValueError(f"sources move at the speed of sound ({sound_speed:g} m/s) or faster")
+        raise ValueError(f"sources must be slower than sound ({sound_speed:g} m/s); they are not")
 
     # The interpolation takes one step on either side; one more for the root's tolerance.
-    first = emitted(clock[0] - margin, "first") - 2.5 * step
-    last = emitted(clock[-1] + margin, "last") + 2.5 * step
-    # Rounded up, so that the blades of a rotor run the same compiled code.
-    return first + step * np.arange(32 * int(np.ceil(((last - first) / step + 1) / 32)))
+    first = emitted(float(clock[0]) - margin, "first") - 2.5 * step
+    last = emitted(float(clock[-1]) + margin, "last") + 2.5 * step
+    n = multiple * int(np.ceil(((last - first) / step + 1) / multiple))
+    tau = first + step * np.arange(n, dtype=np.float64)
+    _, speed, _ = place(poses(motion, tau[:: -(-n // 64)]), x)
+    mach = float(jnp.linalg.norm(speed, axis=-1).max()) / sound_speed
+    if not mach < 1:
+        raise ValueError(
+            f"sources must be slower than sound ({sound_speed:g} m/s); "
+            f"their Mach number is {mach:.3f}"
+        )
+    return tau
 
 
 def hear(arrival: Array, pressure: Array, start: Array, step: Array, n: int, each: int) -> Array:
