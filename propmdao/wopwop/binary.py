@@ -1,0 +1,139 @@
+"""Binary streams of PSU-WOPWOP: 32-bit words without record markers, either byte order."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+MAGIC = 42
+
+Floats = NDArray[np.float32]
+
+
+class WopwopFileError(ValueError):
+    """A PSU-WOPWOP file that cannot be read, in one line that names the file and why."""
+
+
+class Reader:
+    """Reads a whole file and hands out words and texts one after another.
+
+    Parameters
+    ----------
+    path : Path
+        Binary file that begins with the magic number 42.
+
+    Raises
+    ------
+    WopwopFileError
+        If the file cannot be read or does not begin with 42 in either byte order.
+    """
+
+    def __init__(self, path: Path) -> None:
+        self.path = path
+        try:
+            self._data = path.read_bytes()
+        except OSError as error:
+            raise WopwopFileError(f"{path}: {error.strerror or error}") from None
+        self._at = 0
+        orders = [o for o in "<>" if self._data[:4] == np.array(MAGIC, f"{o}i4").tobytes()]
+        if not orders:
+            raise WopwopFileError(
+                f"{path}: not a PSU-WOPWOP binary file; it begins with "
+                f"{self._data[:4].hex(' ') or 'nothing'}, not with {MAGIC} as a 32-bit integer"
+            )
+        self.byte_order = orders[0]
+        #: What fills up texts: blanks or zero bytes.
+        self.padding = b" "
+        self._at = 4
+
+    def ints(self, n: int) -> list[int]:
+        """Return the next n integers."""
+        return [int(i) for i in np.frombuffer(self._take(4 * n), f"{self.byte_order}i4")]
+
+    def floats(self, *shape: int) -> Floats:
+        """Return the next floats in an array of a shape, last axis fastest."""
+        raw = self._take(4 * int(np.prod(shape)))
+        return np.frombuffer(raw, f"{self.byte_order}f4").reshape(shape).astype(np.float32)
+
+    def text(self, n: int) -> str:
+        """Return a text of n bytes without what fills it up."""
+        raw = self._take(n)
+        if raw.endswith(b"\0"):
+            self.padding = b"\0"
+        return raw.rstrip(b" \0").decode("latin-1")
+
+    def expect(self, wanted: int, what: str) -> None:
+        """Refuse the file if the next integer is not the one wanted."""
+        (found,) = self.ints(1)
+        if found != wanted:
+            raise self.error(f"{what} must be {wanted}; it is {found}")
+
+    def choose(self, options: dict[int, str], what: str) -> int:
+        """Return the next integer if it is one of the options, refuse the file otherwise."""
+        (found,) = self.ints(1)
+        if found not in options:
+            known = ", ".join(f"{number} ({meaning})" for number, meaning in options.items())
+            raise self.error(f"{what} must be one of {known}; it is {found}")
+        return found
+
+    def count(self, what: str) -> int:
+        """Return the next integer, a count of at least 1."""
+        (found,) = self.ints(1)
+        if found < 1:
+            raise self.error(f"{what} must be at least 1; it is {found}")
+        return found
+
+    def end(self) -> None:
+        """Refuse a file that goes on after all that its header promised."""
+        if left := len(self._data) - self._at:
+            raise self.error(f"{left} bytes more than its header says")
+
+    def error(self, message: str) -> WopwopFileError:
+        """Return the error to raise about this file."""
+        return WopwopFileError(f"{self.path}: {message}")
+
+    def _take(self, n: int) -> bytes:
+        if self._at + n > len(self._data):
+            raise self.error(
+                f"truncated: {self._at + n} bytes or more expected, the file has {len(self._data)}"
+            )
+        self._at += n
+        return self._data[self._at - n : self._at]
+
+
+class Writer:
+    """Collects words and texts; the counterpart of `Reader`.
+
+    Parameters
+    ----------
+    byte_order : str
+        "<" little-endian or ">" big-endian.
+    padding : bytes
+        One byte that fills up texts.
+    """
+
+    def __init__(self, byte_order: str, padding: bytes) -> None:
+        self._order, self._padding = byte_order, padding
+        self._parts: list[bytes] = []
+        self.ints(MAGIC)
+
+    def ints(self, *values: int) -> None:
+        """Append integers."""
+        self._parts.append(np.array(values, f"{self._order}i4").tobytes())
+
+    def floats(self, values: Floats | float) -> None:
+        """Append floats, last axis fastest."""
+        self._parts.append(np.asarray(values, f"{self._order}f4").tobytes())
+
+    def text(self, value: str, n: int) -> None:
+        """Append a text filled up to n bytes."""
+        raw = value.encode("latin-1")
+        if len(raw) > n:
+            raise ValueError(f"text must be at most {n} bytes; {value[:20]!r}... has {len(raw)}")
+        self._parts.append(raw.ljust(n, self._padding))
+
+    def save(self, path: Path) -> None:
+        """Write the file."""
+        path.write_bytes(b"".join(self._parts))

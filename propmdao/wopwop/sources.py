@@ -1,0 +1,184 @@
+"""From zones of files to the sources of Formulation 1A at given source times."""
+
+from __future__ import annotations
+
+import jax.numpy as jnp
+import numpy as np
+from numpy.typing import NDArray
+
+from propmdao.acoustics.motion import Motion, poses
+from propmdao.acoustics.moving_sources import UnsteadySources, sample
+from propmdao.wopwop.loading_file import LoadingFile
+from propmdao.wopwop.zones import Zone
+
+Array = NDArray[np.float64]
+_Rates = tuple[Array, Array, Array]
+
+
+def is_line(zone: Zone) -> bool:
+    """Whether a geometry zone is a line of nodes, not a surface."""
+    return 1 in zone.values.shape[2:]
+
+
+def source_points(zone: Zone) -> Array:
+    """Nodes of a zone at all of its times, (n, 3) [m]."""
+    return np.moveaxis(zone.values[:, :3], 1, -1).reshape(-1, 3).astype(float)
+
+
+def thickness_sources(zone: Zone, tau: Array, key_offset: float = 0.0) -> UnsteadySources:
+    """Panels of a surface zone.
+
+    Parameters
+    ----------
+    zone : Zone
+        Of a geometry file.
+    tau : (n_times,) array
+        Source times [s].
+    key_offset : float
+        Added to the keys of periodic zones at all times (``periodicKeyOffset``).
+
+    Returns
+    -------
+    UnsteadySources
+        Centres and outward vector areas of the cells of the grid; one time if constant.
+
+    Raises
+    ------
+    ValueError
+        If an aperiodic zone does not cover the source times.
+    """
+    center, area = _panels(zone)
+    position = _in_time(center, zone, tau, key_offset)
+    return _unsteady(position, _in_time(area, zone, tau, key_offset)[:2])
+
+
+def loading_sources(
+    geometry: Zone,
+    loading: Zone,
+    file: LoadingFile,
+    tau: Array,
+    motion: Motion,
+    key_offset: float = 0.0,
+) -> UnsteadySources:
+    """Point forces on the fluid of a zone.
+
+    Parameters
+    ----------
+    geometry, loading : Zone
+        The zone in the geometry file, and its data.
+    file : LoadingFile
+        Where the data are from: their kind, place and frame.
+    tau, key_offset
+        As in `thickness_sources`.
+    motion : Motion
+        Of the zone, for data that are given in the ground's frame.
+
+    Returns
+    -------
+    UnsteadySources
+        At the nodes of a line (its lengths by the trapezoidal rule), at the cells of a surface.
+
+    Raises
+    ------
+    ValueError
+        If the data are of a kind that is not computed, do not fit the geometry or do not cover
+        the source times.
+    """
+    if file.data == 3:
+        raise ValueError(
+            "flow data (permeable surface) are not computed, only pressure and loading"
+        )
+    if file.data == 2 and file.frame == 2:
+        raise ValueError("loading vectors in the mixed frame (2) are not computed: use 1 or 3")
+    line = is_line(geometry)
+    if file.data == 1 and line:
+        raise ValueError("surface pressure is given for a line; a line takes loading vectors")
+    center, extent = _line(geometry) if line else _panels(geometry)
+    if file.data == 2 and not line:
+        extent = np.linalg.norm(extent, axis=-1, keepdims=True)
+    # Files hold the force ON THE BLADE, pressure pushes the fluid along the outward normal.
+    sign = 1.0 if file.data == 1 else -1.0
+    density = sign * _density(geometry, loading, file.at_faces, line)
+    size, size_rate, _ = _in_time(extent, geometry, tau, key_offset)
+    value, value_rate, _ = _in_time(density, loading, tau, key_offset)
+    force, rate = value * size, value_rate * size + value * size_rate
+    if file.data == 2 and file.frame == 1:
+        pose = poses(motion, tau)
+        turn, turn_rate = np.asarray(pose.rotation), np.asarray(pose.rotation_rate)
+
+        def local(matrix: Array, vector: Array) -> Array:
+            return np.einsum(
+                "tji,tnj->tni", matrix, np.broadcast_to(vector, (tau.size, *force.shape[1:]))
+            )
+
+        force, rate = local(turn, force), local(turn_rate, force) + local(turn, rate)
+    return _unsteady(_in_time(center, geometry, tau, key_offset), (force, rate))
+
+
+def _unsteady(position: _Rates, vector: tuple[Array, ...]) -> UnsteadySources:
+    return UnsteadySources(*(jnp.asarray(q) for q in (*position, *vector)))
+
+
+def _panels(zone: Zone) -> tuple[Array, Array]:
+    """Return centres and outward vector areas of the cells, each (n_times, n, 3)."""
+    nodes = np.moveaxis(zone.values[:, :3].astype(float), 1, -1)
+    a, b, c, d = _corners(nodes)
+    area = 0.5 * np.cross(c - a, d - b)
+    if zone.normals_at_faces is None:
+        normal = _mean_of_corners(np.moveaxis(zone.values[:, 3:].astype(float), 1, -1))
+    else:
+        normal = np.moveaxis(zone.normals_at_faces.astype(float), 1, -1)
+    # The file's normals say which side is outside; areas come from the grid.
+    outward = np.where(np.sum(area * normal, axis=-1, keepdims=True) < 0, -1.0, 1.0)
+    n_times = len(nodes)
+    return _mean_of_corners(nodes).reshape(n_times, -1, 3), (outward * area).reshape(n_times, -1, 3)
+
+
+def _line(zone: Zone) -> tuple[Array, Array]:
+    """Return nodes (n_times, n, 3) and the lengths that belong to them (n_times, n, 1)."""
+    nodes = np.moveaxis(zone.values[:, :3].astype(float), 1, -1).reshape(len(zone.values), -1, 3)
+    between = 0.5 * np.linalg.norm(np.diff(nodes, axis=1), axis=-1, keepdims=True)
+    return nodes, np.pad(between, ((0, 0), (0, 1), (0, 0))) + np.pad(
+        between, ((0, 0), (1, 0), (0, 0))
+    )
+
+
+def _density(geometry: Zone, loading: Zone, at_faces: bool, line: bool) -> Array:
+    """Return what is given per area or length where the sources are, (n_times, n, 1 or 3)."""
+    given = np.moveaxis(loading.values.astype(float), 1, -1)
+    j_max, i_max = geometry.values.shape[2:]
+    wanted = (j_max - 1, i_max - 1) if at_faces and not line else (j_max, i_max)
+    if given.shape[1:3] != wanted:
+        raise ValueError(
+            f"data of zone {loading.name!r} must be {wanted[1]} x {wanted[0]} to fit its geometry; "
+            f"they are {given.shape[2]} x {given.shape[1]}"
+        )
+    if not line and not at_faces:
+        given = _mean_of_corners(given)
+    return np.asarray(given.reshape(len(given), -1, given.shape[-1]))
+
+
+def _corners(grid: Array) -> tuple[Array, Array, Array, Array]:
+    """Return the corners of each cell around it, of (n_times, j_max, i_max, ...)."""
+    return grid[:, :-1, :-1], grid[:, :-1, 1:], grid[:, 1:, 1:], grid[:, 1:, :-1]
+
+
+def _mean_of_corners(grid: Array) -> Array:
+    a, b, c, d = _corners(grid)
+    return np.asarray(0.25 * (a + b + c + d))
+
+
+def _in_time(table: Array, zone: Zone, tau: Array, key_offset: float) -> _Rates:
+    """Return a table of a zone at the source times with two derivatives; one time if constant."""
+    if zone.keys is None:
+        return table, np.zeros_like(table), np.zeros_like(table)
+    keys = zone.keys.astype(float)
+    if zone.period is None:
+        return sample(table, keys, tau)
+    # Keys are in any unit; one period is where the first values come back. Files repeat them at
+    # their end or leave them out.
+    n, span = len(keys), keys[-1] - keys[0]
+    scale = np.ptp(table) or 1.0
+    repeats = n > 2 and np.abs(table[-1] - table[0]).max() < 1e-6 * scale
+    unit = zone.period / (span if repeats else span * n / (n - 1))
+    return sample(table, unit * keys, tau + unit * key_offset, zone.period)

@@ -1,0 +1,184 @@
+"""Zones of PSU-WOPWOP files: headers first, then the data time by time and zone by zone."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from propmdao.wopwop.binary import Floats, Reader, Writer
+
+TIMES = {1: "constant", 2: "periodic", 3: "aperiodic"}
+CENTRED = {1: "at nodes", 2: "at faces"}
+_CONSTANT, _PERIODIC = 1, 2
+
+
+@dataclass(frozen=True)
+class Zone:
+    """One structured zone of a geometry or loading file.
+
+    Attributes
+    ----------
+    name : str
+        At most 32 characters.
+    values : (n_times, n_components, j_max, i_max) float32 array
+        Of a geometry: x, y, z [m] of the nodes and the three components of their normals. Of a
+        loading: pressure [Pa], the force ON THE BLADE per area [N/m^2] or per length of a line
+        [N/m], or rho, rho u, rho v, rho w, p'. One time if constant.
+    keys : (n_times,) float32 array or None
+        Times [s], or periodic keys in any unit; None if constant.
+    period : float or None
+        Of a periodic zone [s].
+    normals_at_faces : (n_times, 3, j_max - 1, i_max - 1) float32 array or None
+        Of a geometry with face-centred normals; `values` then has the nodes alone.
+    """
+
+    name: str
+    values: Floats
+    keys: Floats | None = None
+    period: float | None = None
+    normals_at_faces: Floats | None = None
+
+
+@dataclass(frozen=True)
+class ZoneHeader:
+    """What the header of a zone says: its name, size and times."""
+
+    name: str
+    i_max: int
+    j_max: int
+    period: float | None
+    n_times: int | None
+
+
+def read_header(file: Reader, kind: int) -> ZoneHeader:
+    """Read the header of a zone.
+
+    Parameters
+    ----------
+    file : Reader
+        At the beginning of the header.
+    kind : int
+        Time dependence, one of `TIMES`.
+
+    Returns
+    -------
+    ZoneHeader
+        As it stands.
+    """
+    name = file.text(32)
+    period = float(file.floats(1)[0]) if kind == _PERIODIC else None
+    n_times = file.count("number of times of a zone") if kind != _CONSTANT else None
+    return ZoneHeader(name, file.count("iMax"), file.count("jMax"), period, n_times)
+
+
+def read_zones(
+    file: Reader, headers: Sequence[ZoneHeader], n_components: int, face_normals: bool = False
+) -> tuple[Zone, ...]:
+    """Read the data of all zones up to the end of the file.
+
+    Parameters
+    ----------
+    file : Reader
+        Behind the last header.
+    headers : sequence of ZoneHeader
+        Of all zones with data.
+    n_components : int
+        Number of values at each node.
+    face_normals : bool
+        Whether three more follow for each face.
+
+    Returns
+    -------
+    tuple of Zone
+        In the order of the headers.
+
+    Raises
+    ------
+    WopwopFileError
+        If the file ends too early or goes on, or the zones differ in their number of times.
+    """
+    counts = {head.n_times for head in headers}
+    if len(counts) > 1:
+        raise file.error(f"all zones must have the same number of times; they have {counts}")
+    n_times = counts.pop()
+    keys, values, normals = ([[] for _ in headers] for _ in range(3))  # type: ignore[var-annotated]
+    for _ in range(n_times or 1):
+        for zone, head in enumerate(headers):
+            if n_times is not None:
+                keys[zone].append(file.floats(1)[0])
+            values[zone].append(file.floats(n_components, head.j_max, head.i_max))
+            if face_normals:
+                normals[zone].append(
+                    file.floats(3, *(max(n - 1, 1) for n in (head.j_max, head.i_max)))
+                )
+    file.end()
+    return tuple(
+        Zone(
+            head.name,
+            np.stack(values[zone]),
+            None if n_times is None else np.stack(keys[zone]),
+            head.period,
+            np.stack(normals[zone]) if face_normals else None,
+        )
+        for zone, head in enumerate(headers)
+    )
+
+
+def time_dependence(zones: Sequence[Zone]) -> int:
+    """Say which of `TIMES` all of the zones are.
+
+    Parameters
+    ----------
+    zones : sequence of Zone
+        Of one file.
+
+    Returns
+    -------
+    int
+        1 constant, 2 periodic or 3 aperiodic.
+
+    Raises
+    ------
+    ValueError
+        If they differ, or in their number of times, or there are none.
+    """
+    kinds = {
+        (
+            _CONSTANT if zone.keys is None else 3 if zone.period is None else _PERIODIC,
+            len(zone.values),
+        )
+        for zone in zones
+    }
+    if len(kinds) != 1:
+        found = ", ".join(f"{TIMES[kind]} with {n} times" for kind, n in sorted(kinds)) or "none"
+        raise ValueError(f"zones of a file must have the same time dependence; got {found}")
+    return kinds.pop()[0]
+
+
+def write_zones(out: Writer, zones: Sequence[Zone]) -> None:
+    """Append headers and data of zones.
+
+    Parameters
+    ----------
+    out : Writer
+        Behind the header of the file.
+    zones : sequence of Zone
+        Of the same time dependence.
+    """
+    for zone in zones:
+        n_times, _, j_max, i_max = zone.values.shape
+        out.text(zone.name, 32)
+        if zone.period is not None:
+            out.floats(zone.period)
+        if zone.keys is not None:
+            out.ints(n_times)
+        out.ints(i_max, j_max)
+    for step in range(len(zones[0].values)):
+        for zone in zones:
+            if zone.keys is not None:
+                out.floats(float(zone.keys[step]))
+            out.floats(zone.values[step])
+            if zone.normals_at_faces is not None:
+                out.floats(zone.normals_at_faces[step])
