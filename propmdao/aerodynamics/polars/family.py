@@ -20,6 +20,9 @@ from propmdao.records import record
 class SectionPolars:
     """Polars of a blade's sections for any camber and thickness they may be given.
 
+    Some megabytes: hand it to compiled functions as an argument, where a constant costs compile
+    time.
+
     A shape is a section with camber and thickness scaled to a maximum of 1. The polar of a section
     between shapes is the mean, by weight, of theirs at its own camber and thickness (of the
     logarithm, for drag).
@@ -46,6 +49,7 @@ class SectionPolars:
     weights: jax.Array
 
 
+@jax.jit
 def section_tables(
     polars: SectionPolars, weights: jax.Array, camber: jax.Array, thickness: jax.Array
 ) -> PolarTable:
@@ -153,5 +157,7 @@ def shape_values(coefficients: FloatArray, low: IntArray, high: IntArray) -> Flo
         cl.reshape(rows), cd.reshape(rows), cm.reshape(rows), low.ravel(), high.ravel()
     )
     upright = np.moveaxis(flat.reshape(*low.shape, 3, ALPHA.size), -2, -3)
-    turned = upright[:0:-1, ..., ::-1] * np.array([-1.0, 1.0, -1.0])[:, None, None]
-    return np.concatenate([turned, upright])
+    turned = upright[::-1, ..., ::-1] * np.array([-1.0, 1.0, -1.0])[:, None, None]
+    # Without camber both are the same section, but for the rounding of the file.
+    flat_section = 0.5 * (turned[-1:] + upright[:1])
+    return np.concatenate([turned[:-1], flat_section, upright[1:]])

@@ -154,7 +154,7 @@ def read_c81(path: str | os.PathLike[str]) -> PolarTable:
     angles = np.unique(np.concatenate([table[:, 0] for _, table in tables]))
     angles = angles[(angles >= low) & (angles <= high)]
     cl, cd, cm = (np.interp(angles, table[:, 0], table[:, 1]) for _, table in tables)
-    name, mach = lines[0][:30].strip(), float(tables[0][0][0])
+    name, mach = lines[0][:30].strip(), float(tables[0][0])
     try:
         # The format has no Reynolds number; that of a single polar only has to be possible.
         return table_from_polars([Polar(name, 1e6, mach, np.radians(angles), cl, cd, cm)])

@@ -57,6 +57,7 @@ class PolarTable:
         return self.values[:, 2]
 
 
+@jax.jit
 def section_coefficients(
     table: PolarTable, alpha: jax.Array, re: jax.Array, mach: jax.Array | float = 0.0
 ) -> tuple[jax.Array, jax.Array, jax.Array]:

@@ -14,6 +14,8 @@ from propmdao.aerodynamics.polars.table import PolarError, PolarTable
 
 #: Widest step between angles that a polar may have where it holds [deg].
 LARGEST_STEP_DEG = 5.0
+#: So far from no angle of attack that rule holds: C81 tables are coarse beyond [deg].
+CLOSE_DEG = 12.0
 #: A polar that reaches this far both ways is taken as given at all angles [deg].
 FULL_CIRCLE_DEG = 170.0
 #: Angles that every polar must reach [deg].
@@ -44,8 +46,8 @@ class Polar:
     Raises
     ------
     PolarError
-        If values are missing, not finite or out of range; angles do not rise, leave gaps of more
-        than 5 deg below 30 deg or do not span -1..4 deg; or lift or drag look like other units.
+        If values are missing, not finite or out of range; angles come twice, leave gaps of
+        more than 5 deg within 12 deg of 0 or do not span -1..4 deg; or units look wrong.
     """
 
     name: str
@@ -91,7 +93,7 @@ class Polar:
                 f"alpha must span at least {NEEDED_DEG[0]:g}..{NEEDED_DEG[1]:g} deg; it spans "
                 f"{degrees[0]:g}..{degrees[-1]:g}"
             )
-        wide = (steps > LARGEST_STEP_DEG + 1e-6) & (np.abs(degrees[:-1] + 0.5 * steps) < 30.0)
+        wide = (steps > LARGEST_STEP_DEG + 1e-6) & (np.abs(degrees[:-1] + 0.5 * steps) < CLOSE_DEG)
         if wide.any():
             gap = int(wide.argmax())
             raise PolarError(
