@@ -168,8 +168,8 @@ def _march(
     each: int,
 ) -> Array:
     n = sources.vector[0].shape[1]
-    chunk = min(n, max(1, _AT_ONCE // tau.size))
-    # The last chunk is filled up with sources of no strength where the first one is.
+    chunk = -(-n // -(-n * tau.size // _AT_ONCE))
+    # The last chunk is filled up with sources of no strength where its last one is.
     chunks = Sources(
         tuple(_in_chunks(x, chunk, "edge") for x in sources.position),
         tuple(_in_chunks(q, chunk, "constant") for q in sources.vector),

@@ -102,7 +102,8 @@ def source_times(
     last = emitted(float(clock[-1]) + margin, "last") + 2.5 * step
     n = multiple * int(np.ceil(((last - first) / step + 1) / multiple))
     tau = first + step * np.arange(n, dtype=np.float64)
-    _, speed, _ = place(poses(motion, tau[:: -(-n // 64)]), x)
+    pose, some = poses(motion, tau), slice(None, None, -(-n // 64))
+    _, speed, _ = place(jax.tree.map(lambda q: q[some], pose), x)
     mach = float(jnp.linalg.norm(speed, axis=-1).max()) / sound_speed
     if not mach < 1:
         raise ValueError(
