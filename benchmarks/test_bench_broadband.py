@@ -1,0 +1,60 @@
+"""How long a rotor's self-noise takes: 24 strips, 24 azimuths, 30 bands, one and nine observers."""
+
+from __future__ import annotations
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+import pytest
+
+from propmdao.acoustics import arc
+from propmdao.acoustics.broadband import (
+    Section,
+    StripFlow,
+    rotor_self_noise,
+    third_octave_centers,
+)
+
+BANDS = third_octave_centers(100, 80e3)
+
+
+@pytest.fixture(scope="module", params=[1, 9], ids="observers-{}".format)
+def case(request):
+    """Return (strips, observers): what the noise is differentiated by in a design."""
+    r = np.linspace(0.02, 0.138, 24)
+    beta = np.arctan2(0.025, r)
+    chord = 0.03 - 0.1 * r
+    chord_direction = np.stack([0 * r, -np.cos(beta), -np.sin(beta)], axis=-1)
+    section = Section(
+        chord=jnp.asarray(chord),
+        span=jnp.full(24, 0.005),
+        speed=jnp.asarray(440 * r),
+        angle_of_attack=jnp.linspace(0.2, 0.05, 24),
+        trailing_edge_thickness=jnp.full(24, 2e-4),
+        trailing_edge_angle=jnp.full(24, 0.2),
+    )
+    strips = StripFlow(
+        position=jnp.asarray(np.stack([r, 0 * r, 0 * r], axis=-1)),
+        chord_direction=jnp.asarray(chord_direction),
+        span_direction=jnp.asarray(np.tile([1.0, 0.0, 0.0], (24, 1))),
+        section=section,
+    )
+    elevation_deg = [-45.0] if request.param == 1 else np.linspace(-45.0, 45.0, request.param)
+    return strips, jnp.asarray(arc(1.905, elevation_deg))
+
+
+def hear(strips, observers):
+    return rotor_self_noise(strips, 2, 440.0, 0.0, 340.294, 1.46e-5, observers, BANDS).total
+
+
+def timed(benchmark, function, *arguments):
+    compiled = jax.jit(function).lower(*arguments).compile()
+    benchmark(lambda: jax.block_until_ready(compiled(*arguments)))
+
+
+def test_rotor_self_noise(benchmark, case):
+    timed(benchmark, hear, *case)
+
+
+def test_reverse_derivative(benchmark, case):
+    timed(benchmark, jax.grad(lambda *at: jnp.sum(jnp.log(hear(*at)))), *case)

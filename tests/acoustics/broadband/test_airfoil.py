@@ -1,0 +1,167 @@
+"""Closed forms, symmetries and derivatives of one airfoil's self-noise."""
+
+from __future__ import annotations
+
+import dataclasses
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+import pytest
+from jax.test_util import check_grads
+
+from propmdao.acoustics.broadband import (
+    band_level_db,
+    boundary_layer,
+    radiation,
+    third_octave_centers,
+    tip_noise,
+    trailing_edge_noise,
+)
+
+C, NU = 340.0, 1.5e-5
+BANDS = third_octave_centers(200, 20e3)
+
+
+def noise(section, trip="none", sight=(0.3, 0.2, 1.0), layer=None, bands=BANDS):
+    if layer is None:
+        layer = boundary_layer(section.chord, section.speed, section.angle_of_attack, NU, trip)
+    toward = radiation(*sight, section.speed / C)
+    return trailing_edge_noise(bands, section, layer, toward, C, NU, trip)
+
+
+def test_directivity_as_printed():
+    # Equations B1 and B2, with angles.
+    m, theta, phi, r = 0.2, 1.1, 0.7, 2.0
+    y, z = r * np.sin(theta) * np.cos(phi), r * np.sin(theta) * np.sin(phi)
+    got = radiation(r * np.cos(theta), y, z, m)
+    moving = 1 + m * np.cos(theta)
+    high = 2 * np.sin(theta / 2) ** 2 * np.sin(phi) ** 2
+    high /= moving * (1 + 0.2 * m * np.cos(theta)) ** 2
+    low = np.sin(theta) ** 2 * np.sin(phi) ** 2 / moving**4
+    assert float(got.high * r**2) == pytest.approx(high, rel=1e-9)
+    assert float(got.low * r**2) == pytest.approx(low, rel=1e-9)
+
+
+def test_directivity_is_finite_in_the_chord_line():
+    for x in (-1.0, 1.0):
+        value, slope = jax.value_and_grad(lambda z, x=x: radiation(x, 0.0, z, 0.2).high)(0.0)
+        assert value == 0 and np.isfinite(slope)
+
+
+def test_the_side_of_the_suction_does_not_matter(section):
+    for up, down in zip(noise(section(degrees=3.0)), noise(section(degrees=-3.0)), strict=True):
+        np.testing.assert_array_equal(up, down)
+
+
+def test_suction_side_is_thicker_and_lower_in_pitch(section):
+    s = section(chord=0.3, speed=70.0)
+    layer = boundary_layer(s.chord, s.speed, s.angle_of_attack, NU)
+    assert layer.displacement_suction > layer.displacement_pressure
+    assert layer.thickness_suction > layer.displacement_suction > layer.momentum_suction
+    edge = noise(s)
+    assert BANDS[np.argmax(edge.suction_side)] < BANDS[np.argmax(edge.pressure_side)]
+
+
+def test_light_trip_is_six_tenths_of_the_heavy_one():
+    heavy = boundary_layer(0.1, 50.0, 0.05, NU, "heavy")
+    light = boundary_layer(0.1, 50.0, 0.05, NU, "light")
+    for a, b in zip(jax.tree.leaves(heavy), jax.tree.leaves(light), strict=True):
+        assert float(b / a) == pytest.approx(0.6, rel=1e-12)
+
+
+def test_beyond_25_degrees_the_layer_stays_as_it_is():
+    end, beyond = (boundary_layer(0.1, 50.0, np.radians(a), NU) for a in (25.3, 60.0))
+    for a, b in zip(jax.tree.leaves(end), jax.tree.leaves(beyond), strict=True):
+        assert float(b / a) == pytest.approx(1.0, rel=1e-12)
+
+
+def test_a_tripped_layer_sheds_no_laminar_vortices(section):
+    assert not np.any(noise(section(), trip="heavy").laminar_shedding)
+    assert np.all(noise(section()).laminar_shedding > 0)
+
+
+def test_noise_grows_with_span_and_falls_with_squared_distance(section):
+    near = noise(section(span=0.02), sight=(0.3, 0.2, 1.0))
+    far = noise(section(span=0.01), sight=(0.6, 0.4, 2.0))
+    for a, b in zip(near, far, strict=True):
+        np.testing.assert_allclose(a, 8 * b, rtol=1e-9)
+
+
+def test_displacement_thickness_of_another_model_is_used(section):
+    s = section()
+    layer = boundary_layer(s.chord, s.speed, s.angle_of_attack, NU)
+    thicker = dataclasses.replace(layer, displacement_suction=10**0.3 * layer.displacement_suction)
+    before, after = noise(s), noise(s, layer=thicker)
+    np.testing.assert_array_equal(before.pressure_side, after.pressure_side)
+    # 3 dB thicker: 3 dB more, three bands lower.
+    np.testing.assert_allclose(
+        after.suction_side[:-3], 10**0.3 * before.suction_side[3:], rtol=1e-9
+    )
+
+
+def test_stall_leaves_only_separation(section):
+    edge = noise(section(degrees=15.0))
+    assert not np.any(edge.pressure_side) and not np.any(edge.suction_side)
+    assert np.all(edge.separation > 0)
+
+
+def test_nothing_jumps_over_angle_speed_and_edge_thickness(section):
+    # Half the step, half the change, wherever it is heard: a jump would stay.
+    def largest_step(name, values):
+        s = section(**{name: values})
+        s = dataclasses.replace(s, **{k: v[:, None] for k, v in s.__dict__.items() if v.ndim})
+        level = jax.jit(lambda s: band_level_db(sum(noise(s, bands=BANDS[2::6]))))(s)
+        return np.abs(np.diff(np.asarray(level), axis=0)).max()
+
+    for name, values in (
+        ("degrees", np.linspace(0, 30, 3001)),
+        ("speed", np.geomspace(5, 200, 2001)),
+        ("edge", np.geomspace(1e-6, 3e-3, 2001)),
+    ):
+        coarse, fine = largest_step(name, values[::2]), largest_step(name, values)
+        assert fine < 0.55 * coarse, (name, coarse, fine)
+
+
+@pytest.mark.parametrize("degrees", [0.0, 5.0, 7.0])
+def test_derivatives_are_those_of_the_values(section, degrees):
+    s = section(degrees=degrees)
+
+    def total(chord, speed, angle, thickness):
+        at = dataclasses.replace(
+            s, chord=chord, speed=speed, angle_of_attack=angle, trailing_edge_thickness=thickness
+        )
+        return jnp.log10(sum(noise(at)))
+
+    at = (s.chord, s.speed, s.angle_of_attack, 1e3 * s.trailing_edge_thickness)
+    check_grads(
+        lambda c, u, a, h: total(c, u, a, h / 1e3), at, order=1, eps=1e-7, rtol=2e-3, atol=2e-3
+    )
+
+
+@pytest.mark.parametrize(
+    "changes", [{"degrees": 0.0}, {"speed": 0.0}, {"chord": 0.0}, {"edge": 0.0}, {"span": 0.0}]
+)
+def test_derivatives_are_finite_where_nothing_is_left(section, changes):
+    s = section(**changes)
+
+    def total(at):
+        vortex = tip_noise(BANDS, at.chord, at.speed, at.angle_of_attack, 1.0, C)
+        return jnp.sum(band_level_db(sum(noise(at)) + vortex))
+
+    value, slopes = jax.value_and_grad(total)(s)
+    assert np.isfinite(value)
+    assert all(np.isfinite(slope) for slope in jax.tree.leaves(slopes))
+
+
+@pytest.mark.parametrize("tip", ["rounded", "square"])
+def test_tip_vortex_as_printed(tip):
+    # Equations 61 to 67 at 5 deg.
+    u, c = 60.0, 0.03
+    length = (0.008 * 5 if tip == "rounded" else 0.0378 + 0.0095 * 5) * c
+    m = u / C
+    m_max = m * (1 + 0.036 * 5)
+    st = BANDS * length / (m_max * C)
+    level = 10 * np.log10(m**2 * m_max**3 * length**2) - 30.5 * (np.log10(st) + 0.3) ** 2 + 126
+    got = band_level_db(tip_noise(BANDS, c, u, np.radians(5.0), 1.0, C, tip))
+    np.testing.assert_allclose(got, level, atol=1e-6)

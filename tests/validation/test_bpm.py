@@ -1,0 +1,135 @@
+"""Self-noise of airfoils against the table and the figures of NASA RP-1218.
+
+The figures were digitised from print: a symbol is read within about 0.5 dB and 2 % of a thickness,
+and a band that lies on a steep flank is off by more. Each band is two-sided around what was found.
+"""
+
+from __future__ import annotations
+
+import csv
+
+import jax.numpy as jnp
+import numpy as np
+import pytest
+
+from propmdao.acoustics.broadband import (
+    Section,
+    band_level_db,
+    boundary_layer,
+    radiation,
+    trailing_edge_noise,
+)
+from propmdao.acoustics.broadband.turbulent_spectra import amplitude_k1, shape_a, shape_b
+
+NOMINAL = np.array(
+    [m * 10**k for k in range(2, 5) for m in (1, 1.25, 1.6, 2, 2.5, 3.15, 4, 5, 6.3, 8)]
+)
+
+
+def table(path):
+    return np.genfromtxt(path, delimiter=",", names=True)
+
+
+def levels(frequency, values, viscosity, sound_speed, distance, trip):
+    section = Section(*(jnp.asarray(v) for v in values))
+    layer = boundary_layer(section.chord, section.speed, section.angle_of_attack, viscosity, trip)
+    toward = radiation(0.0, 0.0, distance, section.speed / sound_speed)
+    edge = trailing_edge_noise(frequency, section, layer, toward, sound_speed, viscosity, trip)
+    return {name: np.asarray(band_level_db(p)) for name, p in edge._asdict().items()}
+
+
+def test_table_d2(reference_data):
+    printed = table(reference_data / "bpm" / "rp1218_tableD2_untripped.csv")
+    values = (0.3048, 0.4572, 71.3, np.radians(1.516), 0.0, 0.0)
+    got = levels(printed["freq_hz"], values, 1.4529e-5, 340.46, 1.22, "none")
+    for mechanism, column, largest in (
+        ("pressure_side", "pressure", 0.01),
+        ("suction_side", "suction", 0.01),
+        ("separation", "separation", 0.01),
+        ("laminar_shedding", "laminar", 0.08),
+    ):
+        error = np.maximum(got[mechanism], -100) - printed[f"spl_{column}_dB"]
+        assert np.abs(error).max() < largest
+
+
+@pytest.mark.parametrize(
+    ("figure", "curve", "mechanism", "mean", "spread"),
+    [
+        ("11a", "11-a-TBL-TE-suction", "suction_side", (-0.2, 0.1), 0.5),
+        ("28a", "28-a-TBL-TE-pressure", "pressure_side", (-0.3, 0.0), 0.5),
+        ("28a", "28-a-TBL-TE-suction", "suction_side", (-0.3, 0.0), 0.5),
+        ("28a", "28-a-separation", "separation", (-0.3, 0.0), 0.5),
+        ("45a", "45-a-LBL-VS", "laminar_shedding", (-0.3, 0.0), 0.5),
+        ("45a", "45-a-TBL-TE-suction", "suction_side", (-0.5, -0.2), 0.7),
+        # Its last band lies on the cliff behind the peak, 155 dB per decade: 3 dB are 4 % in
+        # frequency.
+        ("98b", "98-b-bluntness", "bluntness", (-1.1, -0.7), 3.2),
+    ],
+)
+def test_figures(reference_data, figure, curve, mechanism, mean, spread):
+    folder = reference_data / "bpm"
+    with open(folder / "brooks1989_cases.csv") as file:
+        case = next(row for row in csv.DictReader(file) if row["figure"] == figure)
+    read = table(folder / "brooks1989" / f"figure{curve}.csv")
+    # The bands are the nominal ones; what was digitised says which.
+    nearest = np.abs(np.log(1e3 * read["freq_kHz"][:, None] / NOMINAL)).argmin(axis=1)
+    names = (
+        "chord_m",
+        "span_L_m",
+        "U_m_s",
+        "alphastar_rad",
+        "te_thickness_h_m",
+        "te_angle_Psi_rad",
+    )
+    got = levels(
+        NOMINAL[nearest],
+        [float(case[name] or 0) for name in names],
+        float(case["nu_m2s"]),
+        float(case["U_m_s"]) / float(case["Mach"]),
+        float(case["r_e_m"]),
+        "heavy" if case["bl"].startswith("Tripped") else "none",
+    )
+    error = got[mechanism] - read["spl_third_octave_dB"]
+    assert mean[0] < error.mean() < mean[1]
+    assert np.abs(error).max() < spread
+
+
+@pytest.mark.parametrize(
+    ("trip", "thickness", "curve", "low", "high"),
+    [
+        ("heavy", "thickness_pressure", "bl_thickness-tripped", -0.03, 0.01),
+        ("heavy", "displacement_pressure", "disp_thickness-tripped", -0.06, 0.01),
+        ("none", "thickness_pressure", "bl_thickness-untripped", -0.04, 0.01),
+        ("none", "displacement_pressure", "disp_thickness-untripped", -0.06, 0.01),
+    ],
+)
+def test_thickness_at_zero_angle(reference_data, trip, thickness, curve, low, high):
+    # Figure 6. Both sides are alike there; that |0| is rounded to 0.1 deg is 1 % of it.
+    read = table(reference_data / "bpm" / "brooks1989" / f"figure06-{curve}.csv")
+    layer = boundary_layer(1.0, 1e6 * read["Re_c_over_1e6"], 0.0, 1.0, trip)
+    error = np.asarray(getattr(layer, thickness)) / read["thickness_over_chord"] - 1
+    assert low < error.min() < error.max() < high
+    assert low / 2 < error.mean() < 0
+
+
+@pytest.mark.parametrize(
+    ("shape", "curve", "factor", "mean"),
+    [
+        (shape_a, "A_min", 0.0, 0.3),
+        (shape_a, "A_max", 1.0, 0.2),
+        (shape_b, "B_min", 0.0, 0.7),  # steep: 0.7 dB are 0.5 % in frequency
+        (shape_b, "B_max", 1.0, 0.3),
+    ],
+)
+def test_spectral_shapes(reference_data, shape, curve, factor, mean):
+    read = table(reference_data / "bpm" / "brooks1989" / f"figure78-{curve}.csv")
+    got = np.asarray(shape(jnp.log10(read["x_as_digitised"]), factor))
+    error = np.abs(got - read["y_as_digitised"])
+    assert error.mean() < mean
+    assert error.max() < 1.2
+
+
+def test_amplitude_k1(reference_data):
+    read = table(reference_data / "bpm" / "brooks1989" / "figure77.csv")
+    error = np.asarray(amplitude_k1(jnp.log10(read["x_as_digitised"]))) - read["y_as_digitised"]
+    assert np.abs(error).max() < 0.15
