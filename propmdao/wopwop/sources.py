@@ -178,7 +178,9 @@ def _in_time(table: Array, zone: Zone, tau: Array, key_offset: float) -> _Rates:
     # Keys are in any unit; one period is where the first values come back. Files repeat them at
     # their end or leave them out.
     n, span = len(keys), keys[-1] - keys[0]
+    if n < 2 or not span > 0:
+        raise ValueError(f"keys of the periodic zone {zone.name!r} must be 2 or more that increase")
     scale = np.ptp(table) or 1.0
-    repeats = n > 2 and np.abs(table[-1] - table[0]).max() < 1e-6 * scale
+    repeats = np.abs(table[-1] - table[0]).max() < 1e-6 * scale
     unit = zone.period / (span if repeats else span * n / (n - 1))
     return sample(table, unit * keys, tau + unit * key_offset, zone.period)

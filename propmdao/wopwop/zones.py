@@ -97,23 +97,28 @@ def read_zones(
     Raises
     ------
     WopwopFileError
-        If the file ends too early or goes on, or the zones differ in their number of times.
+        If the file ends too early or goes on, holds NaN, or the zones differ in their number of
+        times.
     """
     counts = {head.n_times for head in headers}
     if len(counts) > 1:
         raise file.error(f"all zones must have the same number of times; they have {counts}")
     n_times = counts.pop()
-    keys, values, normals = ([[] for _ in headers] for _ in range(3))  # type: ignore[var-annotated]
+    keys: list[list[np.float32]] = [[] for _ in headers]
+    values: list[list[Floats]] = [[] for _ in headers]
+    normals: list[list[Floats]] = [[] for _ in headers]
     for _ in range(n_times or 1):
         for zone, head in enumerate(headers):
             if n_times is not None:
                 keys[zone].append(file.floats(1)[0])
             values[zone].append(file.floats(n_components, head.j_max, head.i_max))
             if face_normals:
-                normals[zone].append(
-                    file.floats(3, *(max(n - 1, 1) for n in (head.j_max, head.i_max)))
-                )
+                faces = max(head.j_max - 1, 1), max(head.i_max - 1, 1)
+                normals[zone].append(file.floats(3, *faces))
     file.end()
+    for zone, head in enumerate(headers):
+        if not all(np.isfinite(block).all() for block in (*values[zone], *normals[zone])):
+            raise file.error(f"zone {head.name!r} holds infinities or NaN")
     return tuple(
         Zone(
             head.name,

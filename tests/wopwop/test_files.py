@@ -107,6 +107,12 @@ class TestBadFiles:
         file.write_bytes(file.read_bytes()[:size])
         self.refused(file, "truncated: .* the file has")
 
+    def test_not_a_number(self, file):
+        data = bytearray(file.read_bytes())
+        data[1200:1204] = np.float32(np.nan).tobytes()
+        file.write_bytes(data)
+        self.refused(file, "zone 'box' holds infinities or NaN")
+
     def test_too_long(self, file):
         file.write_bytes(file.read_bytes() + bytes(8))
         self.refused(file, "8 bytes more than its header says")
