@@ -24,12 +24,20 @@ from propmdao.geometry.airfoil_library import find_airfoil
 from propmdao.propeller import Propeller
 
 SECTIONS = {"e63": "E63_T1_Re*", "clarky": "CLARK_Y_AIRFOIL_T1_Re*"}
+#: Angles within -4..8 deg at most; one size compiles once.
+MOST = 32
 
 
 def differences(reference_data: Path, airfoil: str) -> np.ndarray:
     """Rows of Re, mean |dcl|, mean |dcd|, mean dcd/cd, mean |dcm| of an airfoil."""
     section, r = find_airfoil(airfoil), np.array([0.5, 1.0])
     polars = polars_for(Propeller("x", 1.0, 2, r, 0.1 * r, r, [(0.0, airfoil)]))
+    table = section_tables(
+        polars,
+        jnp.tile(polars.weights[:1], (MOST, 1)),
+        jnp.full(MOST, section.max_camber),
+        jnp.full(MOST, section.max_thickness),
+    )
     rows = []
     for path in (reference_data / "airfoils" / "polars").glob(SECTIONS[airfoil]):
         try:
@@ -38,16 +46,11 @@ def differences(reference_data: Path, airfoil: str) -> np.ndarray:
             assert "gap" in str(error)  # XFOIL did not converge on the negative side
             continue
         chosen = np.abs(polar.alpha - np.radians(2.0)) < np.radians(6.01)
-        ones = jnp.ones(int(chosen.sum()))
-        table = section_tables(
-            polars,
-            jnp.tile(polars.weights[:1], (ones.size, 1)),
-            ones * section.max_camber,
-            ones * section.max_thickness,
-        )
-        cl, cd, cm = section_coefficients(table, jnp.asarray(polar.alpha[chosen]), ones * polar.re)
+        alpha = jnp.zeros(MOST).at[: int(chosen.sum())].set(polar.alpha[chosen])
+        found = section_coefficients(table, alpha, jnp.full(MOST, polar.re))
+        cl, cd, cm = (np.asarray(values)[: int(chosen.sum())] for values in found)
         given = polar.cl[chosen], polar.cd[chosen], polar.cm[chosen]
-        dcl, dcd, dcm = (np.asarray(a) - b for a, b in zip((cl, cd, cm), given, strict=True))
+        dcl, dcd, dcm = (a - b for a, b in zip((cl, cd, cm), given, strict=True))
         rows.append(
             [polar.re, *(np.abs(d).mean() for d in (dcl, dcd)), (dcd / given[1]).mean()]
             + [np.abs(dcm).mean()]

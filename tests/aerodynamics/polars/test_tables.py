@@ -18,6 +18,7 @@ from propmdao.aerodynamics.polars import (
     blade_tables,
     polars_for,
     section_coefficients,
+    section_tables,
     warn_outside,
     warn_outside_sections,
 )
@@ -25,6 +26,7 @@ from propmdao.aerodynamics.polars import propeller_polars as finding
 from propmdao.aerodynamics.polars.neuralfoil_tables import REYNOLDS, neuralfoil_polar
 from propmdao.aerodynamics.polars.shipped import shape, shipped_tables
 from propmdao.catalog import catalog_names
+from propmdao.geometry.airfoil import naca4
 from propmdao.geometry.airfoil_library import find_airfoil
 from propmdao.geometry.blade import Blade, span_interpolation
 from propmdao.propeller import Propeller, load_propeller
@@ -204,3 +206,30 @@ def test_neuralfoil_makes_the_same_tables_again(name: str) -> None:
     np.testing.assert_allclose(stored[0][2:, columns], cl, atol=2e-4)
     np.testing.assert_allclose(stored[1][2:, columns], np.log(cd), atol=2e-4)
     np.testing.assert_allclose(stored[2][2:, columns], cm, atol=2e-5)
+
+
+# Mean |dcl|, |dcd| over -4..8 deg at Re 6e4: what interpolation and blending of shapes cost.
+BETWEEN_NODES = {"naca": (0.010, 0.0008), "quarter blend": (0.015, 0.0009)}
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("case", BETWEEN_NODES)
+def test_sections_between_the_nodes_are_near_neuralfoil(
+    propeller: Callable[..., Propeller], case: str
+) -> None:
+    pytest.importorskip("neuralfoil", reason="the extra `polars` is not installed")
+    if case == "naca":
+        section, described = naca4(0.0525, 0.4, 0.105), propeller((0.0, "naca4412"))
+        camber, thickness = section.camber, section.thickness
+    else:
+        described = propeller((0.4, "e63"), (0.8, "clarky"))  # a share of 0.25 at r/R 0.5
+        camber, thickness = (values[1] for values in described.sections())
+    polars, alpha, re = polars_for(described), np.arange(-4.0, 8.5, 0.5), 6e4
+    table = section_tables(
+        polars, polars.weights[1:2], jnp.array([camber.max()]), jnp.array([thickness.max()])
+    )
+    repeated = dataclasses.replace(table, values=jnp.repeat(table.values, alpha.size, axis=0))
+    found = section_coefficients(repeated, jnp.radians(alpha), jnp.full(alpha.size, re))
+    exact = neuralfoil_polar(camber, thickness, alpha, np.array([re]))
+    differences = [np.abs(np.asarray(found[k]) - exact[k][0]).mean() for k in range(2)]
+    np.testing.assert_allclose(differences, BETWEEN_NODES[case], rtol=0.1)
