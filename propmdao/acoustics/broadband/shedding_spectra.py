@@ -1,8 +1,8 @@
 """Shapes G1 to G5: laminar vortex shedding and vortices shed by a blunt trailing edge.
 
 Symbols and equation numbers are those of Brooks, Pope and Marcolini, NASA RP-1218 (1989). Where
-their pieces meet at an angle, the corner is rounded, by less than 0.15 dB. Angles are in degrees,
-levels in dB.
+their pieces meet at an angle, the corner is rounded, by less than 0.15 dB; the bound of G5 for a
+thin trailing edge by 1.25 % of its level. Angles are in degrees, levels in dB.
 """
 
 from __future__ import annotations
