@@ -153,8 +153,9 @@ def analyze(
         `rotation_bounds`.
     """
     _check(propeller, rpm, thrust, speed, density, observers)
+    # Of the description, which refuses blade angles beyond its range.
+    propeller = dataclasses.replace(propeller, beta_deg=propeller.beta_deg + twist_offset_deg)
     blade = Blade.from_propeller(propeller)
-    blade = dataclasses.replace(blade, beta=blade.beta + np.radians(twist_offset_deg))
     stations = propeller.r_over_R
     nodes, panels = blade_meshes(
         blade,

@@ -25,21 +25,74 @@ from propmdao.records import Scalar
 _FOUR_PI = 4.0 * jnp.pi
 
 
-def _kernel(p: tuple[Array, Array, Array], a: Array, b: Array, core_radius: Scalar) -> Array:
-    """K such that v = K (a x b): segments (3, n_segments) in rows, points in columns."""
+def _products(p: Array, a: Array, b: Array) -> tuple[Array, Array, Array]:
+    """|P - A|^2, |P - B|^2 and their scalar product: segments in rows, points in columns."""
     px, py, pz = (x[None, :] for x in p)
     ux, uy, uz = px - a[0][:, None], py - a[1][:, None], pz - a[2][:, None]
     wx, wy, wz = px - b[0][:, None], py - b[1][:, None], pz - b[2][:, None]
     aa = ux * ux + uy * uy + uz * uz
     bb = wx * wx + wy * wy + wz * wz
-    d = ux * wx + uy * wy + uz * wz
+    return aa, bb, ux * wx + uy * wy + uz * wz
+
+
+@jax.custom_jvp
+def _kernel(p: Array, a: Array, b: Array, core4: Array) -> Array:
+    """K such that v = K (a x b), (n_segments, n_points), of p, a, b: (3, n), core4: (n,)."""
+    aa, bb, d = _products(p, a, b)
     qq = aa * bb
     q = jnp.sqrt(qq)
     cross2 = qq - d * d
-    # rc^4 L^4: the core beside |a x b|^4 = h^4 L^4.
-    core4 = (core_radius * core_radius * jnp.sum((b - a) ** 2, axis=0)) ** 2
     k = (q - d) * jnp.sqrt((aa + bb + 2.0 * q) / (qq * (cross2 * cross2 + core4[:, None])))
     return k / _FOUR_PI
+
+
+@_kernel.defjvp
+def _kernel_derivative(
+    primals: tuple[Array, Array, Array, Array], tangents: tuple[Array, Array, Array, Array]
+) -> tuple[Array, Array]:
+    # K depends on the points by three scalar products alone. Its slopes in these are elementwise,
+    # and the change of the products by coordinates is a matrix product, forward and transposed: a
+    # gradient takes two thirds of the time that differentiating the arithmetic step by step takes.
+    p, a, b, core4 = primals
+    dp, da, db, dcore4 = tangents
+    aa, bb, d = _products(p, a, b)
+    qq = aa * bb
+    q = jnp.sqrt(qq)
+    cross2 = qq - d * d
+    n, e = aa + bb + 2.0 * q, cross2 * cross2 + core4[:, None]
+    inverse = 1.0 / (qq * n * e)
+    root = n * jnp.sqrt(inverse) / _FOUR_PI  # sqrt(n / (qq e))
+    by_e = 0.5 * (q - d) * (inverse * qq * n)
+    by_n = 0.5 * (q - d) * (inverse * qq * e)
+    one_over_qq = inverse * n * e
+    by_aa = root * ((0.5 * q - 0.5 * (q - d) + by_n * (aa + q)) * (bb * one_over_qq)
+                    - by_e * 2.0 * cross2 * bb)  # fmt: skip
+    by_bb = root * ((0.5 * q - 0.5 * (q - d) + by_n * (bb + q)) * (aa * one_over_qq)
+                    - by_e * 2.0 * cross2 * aa)  # fmt: skip
+    by_d = root * (4.0 * by_e * cross2 * d - 1.0)
+    by_core4 = -root * by_e
+
+    # |P - A|^2 / 2 = (1, -A).(P.P / 2, P) + A.A / 2, likewise the others, so that the sums over
+    # points and over segments in the transpose are matrix products, not slow reductions.
+    one, p1, dp1 = jnp.ones_like(p[:1]), _with(p, 1.0), _with(dp, (p * dp).sum(0))
+
+    def change(x: Array, dx: Array, constant: Array) -> Array:
+        return 2.0 * (_with(-x, 1.0).T @ dp1 + _with(-dx, constant).T @ p1)
+
+    dk = by_aa * change(a, da, (a * da).sum(0)) + by_bb * change(b, db, (b * db).sum(0))
+    dk += by_d * change(0.5 * (a + b), 0.5 * (da + db), 0.5 * (a * db + da * b).sum(0))
+    dk += by_core4 * (dcore4[:, None] @ one)
+    return (q - d) * root, dk
+
+
+def _with(x: Array, row: Array | float) -> Array:
+    """Coordinates (3, n) and a fourth row."""
+    return jnp.concatenate([x, jnp.broadcast_to(row, x[:1].shape)])
+
+
+def _core4(a: Array, b: Array, core_radius: Scalar) -> Array:
+    """rc^4 L^4: the core term beside |a x b|^4 = h^4 L^4."""
+    return (core_radius * core_radius * jnp.sum((b - a) ** 2, axis=0)) ** 2
 
 
 def _moments(a: Array, b: Array) -> Array:
@@ -54,7 +107,7 @@ def _moments(a: Array, b: Array) -> Array:
     )
 
 
-def _velocity(p: tuple[Array, Array, Array], m: Array) -> Array:
+def _velocity(p: Array, m: Array) -> Array:
     """P x M + C for M, C in m[:3], m[3:]."""
     px, py, pz = p
     return jnp.stack(
@@ -80,11 +133,11 @@ def segment_velocities(points: Array, start: Array, end: Array, core_radius: Sca
     (3, n_segments, n_points) array
         Velocity per unit circulation [1/m].
     """
-    p = (points[:, 0], points[:, 1], points[:, 2])
+    p = points.T
 
     def add(total: Array, ends: tuple[Array, Array]) -> tuple[Array, None]:
         a, b = (x.T for x in ends)
-        k = _kernel(p, a, b, core_radius)
+        k = _kernel(p, a, b, _core4(a, b, core_radius))
         return total + k * _velocity(p, _moments(a, b)[:, :, None]), None
 
     total = jnp.zeros((3, start.shape[1], points.shape[0]))
@@ -109,7 +162,7 @@ def filament_velocities(points: Array, nodes: Array, core_radius: Array) -> Arra
     (3, n_filaments, n_points) array
         Velocity per unit circulation [1/m].
     """
-    p = (points[:, 0], points[:, 1], points[:, 2])
+    p = points.T
     core = jnp.tile(core_radius, nodes.shape[1])
 
     # One filament at a time: the block of segments x points stays in cache, and the sum over
@@ -117,6 +170,6 @@ def filament_velocities(points: Array, nodes: Array, core_radius: Array) -> Arra
     @jax.checkpoint
     def one(chains: Array) -> Array:
         a, b = chains[:, :-1].reshape(-1, 3).T, chains[:, 1:].reshape(-1, 3).T
-        return _moments(a, b) @ _kernel(p, a, b, core)
+        return _moments(a, b) @ _kernel(p, a, b, _core4(a, b, core))
 
     return _velocity(p, jnp.moveaxis(jax.lax.map(one, nodes), 1, 0))

@@ -5,7 +5,11 @@ import jax.numpy as jnp
 import numpy as np
 import pytest
 
-from propmdao.aerodynamics.biot_savart import filament_velocities, segment_velocities
+from propmdao.aerodynamics.biot_savart import (
+    _kernel,
+    filament_velocities,
+    segment_velocities,
+)
 
 TINY_CORE = 1e-6
 
@@ -78,3 +82,13 @@ def test_segment_induces_nothing_on_its_own_line_and_its_derivative_is_finite(x)
     point = jnp.array([x, 0.0, 0.0])
     np.testing.assert_allclose(velocity(point), 0.0, atol=1e-12)
     assert np.isfinite(jax.jacobian(velocity)(point)).all()
+
+
+def test_derivative_of_the_kernel_is_that_of_its_arithmetic():
+    key = np.random.default_rng(2)
+    at = tuple(jnp.asarray(key.normal(size=(3, n))) for n in (7, 5, 5)) + (jnp.full(5, 0.3),)
+    along = tuple(jnp.asarray(key.normal(size=x.shape)) for x in at)
+    exact = jax.jvp(_kernel, at, along)
+    by_steps = jax.jvp(_kernel.fun, at, along)
+    np.testing.assert_allclose(exact[0], by_steps[0], rtol=1e-13)
+    np.testing.assert_allclose(exact[1], by_steps[1], rtol=1e-11)
