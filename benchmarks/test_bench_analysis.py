@@ -96,7 +96,7 @@ def test_command_line(benchmark, tmp_path, cache):
         return (str(tmp_path / f"cache{rounds}"),), {}
 
     def run(where: str) -> None:
-        environment = os.environ | {"JAX_COMPILATION_CACHE_DIR": where}
+        environment = os.environ | {"XDG_CACHE_HOME": where}
         subprocess.run(command, check=True, capture_output=True, env=environment)
 
     if cache == "warm":

@@ -8,6 +8,7 @@ harmonics of a slow rotor: rounding errors of about 1e-16 of the fundamental.
 
 from __future__ import annotations
 
+import jax
 import jax.numpy as jnp
 import numpy as np
 from jax import Array
@@ -162,11 +163,13 @@ def pressure_history(
     return np.arange(n_times) / (n_times * passage_hz), np.fft.irfft(spectrum, n_times)
 
 
+@jax.jit
 def _mean_square(amplitude: ArrayLike) -> Array:
     p = jnp.asarray(amplitude)
     return 2 * (p.real**2 + p.imag**2)  # abs() has no derivative at silence
 
 
+@jax.jit
 def _decibel(mean_square: ArrayLike) -> Array:
     return 10 * jnp.log10(jnp.asarray(mean_square) / REFERENCE_PRESSURE**2 + _SILENCE)
 

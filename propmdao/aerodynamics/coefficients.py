@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import jax
 import jax.numpy as jnp
 from jax import Array
 
@@ -29,6 +30,7 @@ class Coefficients:
     eta: Array
 
 
+@jax.jit
 def coefficients(
     thrust: Scalar,
     torque: Scalar,
