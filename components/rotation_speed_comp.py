@@ -126,7 +126,7 @@ def _arguments(inputs: Arrays, constants: Any, n_blades: int) -> tuple[Any, ...]
 
 
 def _solved(inputs: Arrays, constants: Any, static: int) -> Arrays:
-    omega, _, _ = solve_rotation_speed(*_arguments(inputs, constants, static))
+    omega, _ = solve_rotation_speed(*_arguments(inputs, constants, static))
     return {"rpm": omega[None] / _RAD_PER_S}
 
 

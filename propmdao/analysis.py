@@ -17,7 +17,7 @@ from propmdao.acoustics.levels import oaspl_db, oaspl_dba, spl_db, third_octave
 from propmdao.acoustics.observers import arc
 from propmdao.aerodynamics.coefficients import Coefficients, coefficients
 from propmdao.aerodynamics.steady import SteadySolution, solve_steady
-from propmdao.aerodynamics.trim import rotation_bounds, rotation_speed_for_thrust
+from propmdao.aerodynamics.trim import rotation_bounds, steady_for_thrust
 from propmdao.fidelity import Fidelity
 from propmdao.geometry.blade import Blade, SpanInterpolation, span_interpolation
 from propmdao.geometry.lattice import lattice_nodes, lattice_span
@@ -167,19 +167,15 @@ def analyze(
     radius = 0.5 * propeller.diameter
     air = float(speed), float(density)
     if thrust is not None:
-        omega = float(
-            rotation_speed_for_thrust(
-                nodes, propeller.n_blades, radius, *air, thrust, rotation_bounds(radius, speed)
-            )
-        )
+        bounds = rotation_bounds(radius, speed)
+        found, steady = steady_for_thrust(nodes, propeller.n_blades, radius, *air, thrust, bounds)
+        omega = float(found)
         rpm = omega / _RAD_PER_S
     else:
         assert rpm is not None
         omega = rpm * _RAD_PER_S
         require_subsonic_tip(radius, omega, speed, SOUND_SPEED)
-    steady = solve_steady(
-        nodes, propeller.n_blades, radius, omega, *air, thrust_guess=thrust or 0.0
-    )
+        steady = solve_steady(nodes, propeller.n_blades, radius, omega, *air)
     points = np.asarray(observers, float).reshape(-1, 2)
     heard = tones(
         panels,

@@ -7,6 +7,7 @@ w = momentum(thrust(w)), whatever the flight speed; hover is V = 0.
 
 from __future__ import annotations
 
+import dataclasses
 from functools import partial
 
 import jax
@@ -207,20 +208,51 @@ def solve_steady(
         ), None
 
     w, loads, _ = at_root(solve, evaluate, residual, (flow, ages, thrust_guess))
-    thrust = n_blades * loads.thrust
-    agrees = jnp.abs(induced_velocity(flow, thrust) - w) < 1.0e-6 * flow.rotation_speed * radius
-    within_momentum_theory = thrust > -0.5 * jnp.pi * radius**2 * density * speed**2
-    on = jnp.where(turning, 1.0, 0.0)
+    solution = steady_solution(flow, n_blades, w, loads)
+    still = jax.tree.map(jnp.zeros_like, solution)
+    still = dataclasses.replace(
+        still,
+        point_loads=PointLoads(loads.position, still.point_loads.force),
+        converged=jnp.asarray(True),
+    )
+    return jax.tree.map(lambda moving, still: jnp.where(turning, moving, still), solution, still)
+
+
+def steady_solution(
+    flow: Flow, n_blades: int, induced_velocity_at_disk: Array, loads: LatticeLoads
+) -> SteadySolution:
+    """What the loads of a blade amount to.
+
+    Parameters
+    ----------
+    flow : Flow
+        Lattice and operating point.
+    n_blades : int
+        Number of equally spaced blades.
+    induced_velocity_at_disk : float
+        By which the wake was transported [m/s].
+    loads : LatticeLoads
+        Loads of blade 1 in that wake.
+
+    Returns
+    -------
+    SteadySolution
+        Of all blades; `converged` where momentum theory has the same induced velocity.
+    """
+    thrust, w = n_blades * loads.thrust, induced_velocity_at_disk
+    tip_speed, area = flow.rotation_speed * flow.radius, jnp.pi * flow.radius**2
+    agrees = jnp.abs(induced_velocity(flow, thrust) - w) < 1.0e-6 * tip_speed
+    within_momentum_theory = thrust > -0.5 * area * flow.density * flow.speed**2
     strip_thrust, strip_torque = strip_loads(loads)
     return SteadySolution(
-        thrust=on * thrust,
-        torque=on * n_blades * loads.torque,
-        induced_velocity=on * w,
-        circulation=on * loads.circulation,
-        strip_thrust=on * strip_thrust,
-        strip_torque=on * strip_torque,
-        point_loads=PointLoads(loads.position, -on * loads.force),
-        converged=~turning | (agrees & within_momentum_theory),
+        thrust=thrust,
+        torque=n_blades * loads.torque,
+        induced_velocity=w,
+        circulation=loads.circulation,
+        strip_thrust=strip_thrust,
+        strip_torque=strip_torque,
+        point_loads=PointLoads(loads.position, -loads.force),
+        converged=agrees & within_momentum_theory,
     )
 
 

@@ -12,14 +12,22 @@ import jax.numpy as jnp
 import numpy as np
 from jax import Array
 
-from propmdao.aerodynamics.lattice_loads import lattice_geometry
+from propmdao.aerodynamics.lattice_loads import LatticeLoads, lattice_geometry
 from propmdao.aerodynamics.roots import at_root
-from propmdao.aerodynamics.steady import Flow, induced_velocity, loads_at, solve_steady
+from propmdao.aerodynamics.steady import (
+    Flow,
+    SteadySolution,
+    induced_velocity,
+    loads_at,
+    solve_steady,
+    steady_solution,
+)
 from propmdao.records import Scalar
 
 _TOLERANCE = 1.0e-8
 _MAX_EVALUATIONS = 60
 _RPM = 30.0 / np.pi
+_Asked = tuple[Array, int, float, float, float, float, float, float]
 _Params = tuple[Flow, Array, tuple[Array, Array]]  # with the thrust required and the bounds
 
 
@@ -87,26 +95,79 @@ def rotation_speed_for_thrust(
     TrimError
         The thrust required lies outside what the bounds give; the message has both ends.
     """
+    asked = _asked(nodes, n_blades, radius, speed, density, thrust_required, bounds)
+    omega, missing = solve_rotation_speed(*asked)
+    _require_reached(omega, missing, asked)
+    return omega
+
+
+def steady_for_thrust(
+    nodes: Array,
+    n_blades: int,
+    radius: float,
+    speed: float,
+    density: float,
+    thrust_required: float,
+    bounds: tuple[float, float],
+) -> tuple[Array, SteadySolution]:
+    """Solve for the rotation speed that gives the required thrust, and the loads there.
+
+    The last trial of the trim is the solution, so nothing is solved twice.
+
+    Parameters
+    ----------
+    nodes, n_blades, radius, speed, density, thrust_required, bounds
+        As for `rotation_speed_for_thrust`.
+
+    Returns
+    -------
+    rotation_speed, solution : float, SteadySolution
+        Rotation speed [rad/s] and loads.
+
+    Raises
+    ------
+    TrimError
+        As `rotation_speed_for_thrust`.
+    """
+    asked = _asked(nodes, n_blades, radius, speed, density, thrust_required, bounds)
+    omega, missing, solution = _solve_trimmed(*asked)
+    _require_reached(omega, missing, asked)
+    return omega, solution
+
+
+def _asked(
+    nodes: Array,
+    n_blades: int,
+    radius: float,
+    speed: float,
+    density: float,
+    thrust: float,
+    bounds: tuple[float, float],
+) -> _Asked:
+    """Arguments of the compiled trims, of one type each so that they compile once."""
     low, high = (float(bound) for bound in bounds)
     if not 0.0 < low < high:
         raise TrimError(
             "rpm bounds must be positive and increasing; "
             f"they are {low * _RPM:g} and {high * _RPM:g}"
         )
-    flight = (float(speed), float(density))
-    omega, missing_at_low, missing_at_high = solve_rotation_speed(
-        nodes, n_blades, float(radius), *flight, float(thrust_required), low, high
+    return nodes, n_blades, float(radius), float(speed), float(density), float(thrust), low, high
+
+
+def _require_reached(omega: Array, missing: tuple[Array, Array], asked: _Asked) -> None:
+    """Refuse a rotation speed that the bounds do not enclose, with the thrust at both."""
+    at_low, at_high = missing
+    if at_low >= 0.0 >= at_high and np.isfinite(omega):
+        return
+    nodes, n_blades, radius, speed, density, thrust, low, high = asked
+    at = [
+        float(solve_steady(nodes, n_blades, radius, end, speed, density).thrust)
+        for end in (low, high)
+    ]
+    raise TrimError(
+        f"thrust {thrust:g} N is out of reach at {speed:g} m/s: "
+        f"{at[0]:.4g} N at {low * _RPM:g} rpm, {at[1]:.4g} N at {high * _RPM:g} rpm"
     )
-    if not (missing_at_low >= 0.0 >= missing_at_high and np.isfinite(omega)):
-        at = [
-            float(solve_steady(nodes, n_blades, float(radius), end, *flight).thrust)
-            for end in (low, high)
-        ]
-        raise TrimError(
-            f"thrust {float(thrust_required):g} N is out of reach at {float(speed):g} m/s: "
-            f"{at[0]:.4g} N at {low * _RPM:g} rpm, {at[1]:.4g} N at {high * _RPM:g} rpm"
-        )
-    return omega
 
 
 def rotation_speed_by_interpolation(
@@ -153,7 +214,7 @@ def solve_rotation_speed(
     thrust_required: Scalar,
     low: Scalar,
     high: Scalar,
-) -> tuple[Array, Array, Array]:
+) -> tuple[Array, tuple[Array, Array]]:
     """Rotation speed for a thrust, and how much thrust is missing at either bound.
 
     The wake is transported by the induced velocity of the thrust required, which is that of
@@ -169,10 +230,28 @@ def solve_rotation_speed(
 
     Returns
     -------
-    rotation_speed, missing_at_low, missing_at_high : float
+    rotation_speed, missing : float, (float, float)
         The root, exactly differentiable, means nothing unless the thrust missing is positive
-        at `low` and negative at `high` [rad/s], [N], [N].
+        at `low` and negative at `high` [rad/s], [N].
     """
+    omega, missing, _ = _solve_trimmed(
+        nodes, n_blades, radius, speed, density, thrust_required, low, high
+    )
+    return omega, missing
+
+
+@partial(jax.jit, static_argnames="n_blades")
+def _solve_trimmed(
+    nodes: Array,
+    n_blades: int,
+    radius: Scalar,
+    speed: Scalar,
+    density: Scalar,
+    thrust_required: Scalar,
+    low: Scalar,
+    high: Scalar,
+) -> tuple[Array, tuple[Array, Array], SteadySolution]:
+    """Rotation speed, thrust missing at the bounds, and the loads."""
     # The rotation speed in here is that of no trial yet.
     flow = Flow(
         lattice=lattice_geometry(nodes, n_blades, radius),
@@ -182,24 +261,29 @@ def solve_rotation_speed(
         density=jnp.asarray(density, float),
     )
 
-    def thrust(params: _Params, omega: Array) -> Array:
+    def at_speed(params: _Params, omega: Array) -> tuple[Flow, Array]:
         flow, required, _ = params
         flow = dataclasses.replace(flow, rotation_speed=omega)
-        return n_blades * loads_at(flow, n_blades, induced_velocity(flow, required)).thrust
+        return flow, induced_velocity(flow, required)
 
-    def missing(params: _Params, omega: Array, thrust: Scalar) -> Array:
-        return params[1] - thrust
+    def loads(params: _Params, omega: Array) -> LatticeLoads:
+        flow, w = at_speed(params, omega)
+        return loads_at(flow, n_blades, w)
+
+    def missing(params: _Params, omega: Array, loads: LatticeLoads) -> Array:
+        return params[1] - n_blades * loads.thrust
 
     def solve(params: _Params) -> tuple[Array, tuple[Array, Array]]:
         _, required, (low, high) = params
         return _bracketed_search(
-            lambda omega: missing(params, omega, thrust(params, omega)), required, low, high
+            lambda omega: missing(params, omega, loads(params, omega)), required, low, high
         )
 
     bounds = (jnp.asarray(low, float), jnp.asarray(high, float))
     params = (flow, jnp.asarray(thrust_required, float), bounds)
-    omega, _, (at_low, at_high) = at_root(solve, thrust, missing, params)
-    return omega, at_low, at_high
+    omega, blade, at_bounds = at_root(solve, loads, missing, params)
+    flow, w = at_speed(params, omega)
+    return omega, at_bounds, steady_solution(flow, n_blades, w, blade)
 
 
 def _bracketed_search(
