@@ -27,7 +27,7 @@ study: $(VENV)/installed
 	$(BIN)/python studies/low_noise_design.py
 
 test: $(VENV)/dev
-	$(BIN)/python -m pytest -m "not slow"
+	$(BIN)/python -m pytest -m "not slow" -n 2
 
 validation: $(VENV)/dev
 	$(BIN)/python -m pytest -m "slow or validation"
