@@ -1,4 +1,4 @@
-"""Levels of tones in decibels re 20 uPa, and the pressure they add up to.
+"""Levels in decibels re 20 uPa, and the pressure that tones add up to.
 
 Amplitudes are complex P_m as `Tones` holds them, p(t) = 2 Re sum_m P_m exp(-2j pi f_m t), so that
 a tone has the mean square 2 |P_m|^2. Levels are finite and differentiable everywhere, because
@@ -32,7 +32,7 @@ def spl_db(amplitude: ArrayLike) -> Array:
     (..., n_harmonics) array
         Levels [dB re 20 uPa], at least -200.
     """
-    return _decibel(_mean_square(amplitude))
+    return level_db(mean_square(amplitude))
 
 
 def oaspl_db(amplitude: ArrayLike) -> Array:
@@ -48,7 +48,7 @@ def oaspl_db(amplitude: ArrayLike) -> Array:
     (...,) array
         Levels [dB re 20 uPa], at least -200.
     """
-    return _decibel(jnp.sum(_mean_square(amplitude), axis=-1))
+    return level_db(jnp.sum(mean_square(amplitude), axis=-1))
 
 
 def oaspl_dba(frequency_hz: ArrayLike, amplitude: ArrayLike) -> Array:
@@ -66,8 +66,43 @@ def oaspl_dba(frequency_hz: ArrayLike, amplitude: ArrayLike) -> Array:
     (...,) array
         Levels [dBA re 20 uPa], at least -200.
     """
-    weighted = a_weighting(frequency_hz) ** 2 * _mean_square(amplitude)
-    return _decibel(jnp.sum(weighted, axis=-1))
+    return level_dba(frequency_hz, mean_square(amplitude))
+
+
+def level_dba(frequency_hz: ArrayLike, mean_square: ArrayLike) -> Array:
+    """A-weighted overall level of mean squares at frequencies: tones, bins or bands together.
+
+    Parameters
+    ----------
+    frequency_hz : (n,) array
+        Frequencies of tones or bins, mid-band frequencies of third octaves [Hz].
+    mean_square : (..., n) array
+        Mean-square pressures [Pa^2].
+
+    Returns
+    -------
+    (...,) array
+        Levels [dBA re 20 uPa], at least -200.
+    """
+    return level_db(jnp.sum(a_weighting(frequency_hz) ** 2 * jnp.asarray(mean_square), axis=-1))
+
+
+def energy_sum_db(level_db: ArrayLike, axis: int = -1) -> Array:
+    """Level of sounds that are not correlated, or of bands, together: their mean squares add.
+
+    Parameters
+    ----------
+    level_db : array
+        Levels [dB].
+    axis : int
+        Along which to add.
+
+    Returns
+    -------
+    array
+        Levels [dB], one axis less.
+    """
+    return 10 / np.log(10) * jax.nn.logsumexp(np.log(10) / 10 * jnp.asarray(level_db), axis=axis)
 
 
 def a_weighting(frequency_hz: ArrayLike) -> Array:
@@ -114,12 +149,34 @@ def third_octave(
     ----------
     IEC 61260-1:2014: base-ten mid-band and band-edge frequencies.
     """
-    frequency, mean_square = np.asarray(frequency_hz), np.asarray(_mean_square(amplitude))
+    frequency, energy = np.asarray(frequency_hz), np.asarray(mean_square(amplitude))
     heard = frequency > 0
-    index = np.floor(10 * np.log10(frequency[heard] / 1000) + 0.5)
-    bands, band_of_tone = np.unique(index, return_inverse=True)
+    number = np.asarray(band_number(frequency[heard]))
+    bands, band_of_tone = np.unique(number, return_inverse=True)
     membership = np.eye(bands.size)[band_of_tone]
-    return 1000 * 10 ** (bands / 10), np.asarray(_decibel(mean_square[..., heard] @ membership))
+    return 1000 * 10 ** (bands / 10), np.asarray(level_db(energy[..., heard] @ membership))
+
+
+def band_number(frequency_hz: ArrayLike) -> Array:
+    """Which third octave holds a frequency: k of the band around 1000 * 10**(k/10) Hz.
+
+    Parameters
+    ----------
+    frequency_hz : array
+        Frequencies [Hz]; 0 is in band minus infinity.
+
+    Returns
+    -------
+    array
+        Whole numbers, as floats; the lower edge belongs to the band. Steps have no slope: the
+        derivative is zero.
+
+    References
+    ----------
+    IEC 61260-1:2014, base-ten system, 5.4 and 5.5.
+    """
+    frequency = jax.lax.stop_gradient(jnp.asarray(frequency_hz, float))
+    return jnp.floor(10 * jnp.log10(frequency / 1000) + 0.5)
 
 
 def pressure_history(
@@ -164,13 +221,37 @@ def pressure_history(
 
 
 @jax.jit
-def _mean_square(amplitude: ArrayLike) -> Array:
+def mean_square(amplitude: ArrayLike) -> Array:
+    """Mean-square pressure of each tone.
+
+    Parameters
+    ----------
+    amplitude : complex array
+        Amplitudes P_m [Pa], any shape.
+
+    Returns
+    -------
+    array
+        ``2 |P_m|^2`` [Pa^2], the same shape.
+    """
     p = jnp.asarray(amplitude)
     return 2 * (p.real**2 + p.imag**2)  # abs() has no derivative at silence
 
 
 @jax.jit
-def _decibel(mean_square: ArrayLike) -> Array:
+def level_db(mean_square: ArrayLike) -> Array:
+    """Level of mean-square pressures.
+
+    Parameters
+    ----------
+    mean_square : array
+        Mean-square pressures [Pa^2], any shape.
+
+    Returns
+    -------
+    array
+        Levels [dB re 20 uPa], at least -200, the same shape.
+    """
     return 10 * jnp.log10(jnp.asarray(mean_square) / REFERENCE_PRESSURE**2 + _SILENCE)
 
 
