@@ -181,7 +181,7 @@ def _march(
         @jax.checkpoint  # reverse derivatives recompute a chunk: memory stays bounded
         def add(sofar: tuple[Array, Array, Array], part: Sources) -> tuple[tuple, None]:
             heard, latest_start, earliest_end = sofar
-            distance, pressure = _emit(
+            distance, pressure, _ = emit(
                 thickness, part, pose, tau, position, observers.velocity, sound_speed
             )
             # Behind a barrier, for XLA would compute all of it again for each neighbour in `hear`.
@@ -209,7 +209,7 @@ def _in_chunks(array: Array, chunk: int, mode: str) -> Array:
 _Vector = tuple[Array, Array, Array]
 
 
-def _emit(
+def emit(
     thickness: bool,
     sources: Sources,
     pose: Poses,
@@ -217,10 +217,35 @@ def _emit(
     observer: Array,
     observer_velocity: Array,
     sound_speed: Scalar,
-) -> tuple[Array, Array]:
-    """Return the way d of the sound and 4 pi p (for thickness 4 pi p / rho), each (n, n_times)."""
+) -> tuple[Array, Array, Array]:
+    """Sound of moving sources that leaves at given times, as one observer hears it.
+
+    Parameters
+    ----------
+    thickness : bool
+        Whether the sources are panels; otherwise they are forces (static).
+    sources : Sources
+        In their frame.
+    pose : Poses
+        Of the frame at the source times.
+    tau : (n_times,) array
+        Source times [s].
+    observer, observer_velocity : (3,) arrays
+        Position at time 0 [m] and velocity [m/s].
+    sound_speed : float
+        [m/s].
+
+    Returns
+    -------
+    distance : (n, n_times) array
+        d from the source at emission to the observer at reception, t = tau + d / c [m].
+    pressure : (n, n_times) array
+        4 pi p of forces [Pa], 4 pi p / rho of panels.
+    rate : (n, n_times) array
+        dt/dtau.
+    """
     c = sound_speed
-    turns = (pose.rotation, pose.rotation_rate, pose.rotation_acceleration)
+    turns = tuple(map(jnp.asarray, (pose.rotation, pose.rotation_rate, pose.rotation_acceleration)))
     y, v, a = (
         _add(_derivative(turns, sources.position, k), tuple(origin.T))
         for k, origin in enumerate((pose.origin, pose.velocity, pose.acceleration))
@@ -237,17 +262,18 @@ def _emit(
 
     m_r = _dot(v, r) / c
     doppler = 1 / (1 - m_r)
+    rate = (1 - m_r) / (1 - _dot(m_o, r))
     # d Mdot_r + c (M_r - M^2)
     near = d * _dot(a, r) / c + c * m_r - _dot(v, v) / c
     if thickness:
         # rho v_n_dot / (d (1 - M_r)^2) + rho v_n near / (d^2 (1 - M_r)^3)
         v_n, v_n_dot = _dot(v, q), _dot(a, q) + _dot(v, q_dot)
-        return d, (v_n_dot + v_n * near * doppler / d) * doppler**2 / d
+        return d, (v_n_dot + v_n * near * doppler / d) * doppler**2 / d, rate
     # ldot_r / (c d (1 - M_r)^2) + (l_r - l_M) / (d^2 (1 - M_r)^2)
     #   + l_r near / (c d^2 (1 - M_r)^3)
     l_r, l_m = _dot(q, r), _dot(q, v) / c
     bracket = _dot(q_dot, r) / c + (l_r - l_m + l_r * near * doppler / c) / d
-    return d, bracket * doppler**2 / d
+    return d, bracket * doppler**2 / d, rate
 
 
 def _derivative(turns: tuple[Array, ...], local: tuple[Array, ...], order: int) -> _Vector:

@@ -10,13 +10,12 @@ are chains that share their outer frames.
 
 from __future__ import annotations
 
-import jax
-import jax.numpy as jnp
 import numpy as np
-from jax import Array
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from propmdao.records import record
+
+Array = NDArray[np.float64]
 
 
 @record
@@ -93,11 +92,11 @@ def rotation(axis: ArrayLike, angle: ArrayLike = 0.0, rate: ArrayLike = 0.0) -> 
     length = np.linalg.norm(direction)
     if direction.shape != (3,) or not (np.isfinite(length) and length > 0):
         raise ValueError(f"rotation axis must be three numbers, not all zero; got {direction}")
-    rest = jnp.zeros(3)
+    rest = np.zeros(3)
     return Frame(
-        jnp.asarray(direction / length),
-        jnp.asarray(angle, float),
-        jnp.asarray(rate, float),
+        np.asarray(direction / length),
+        np.asarray(angle, float),
+        np.asarray(rate, float),
         *(rest, rest, rest),
     )
 
@@ -119,8 +118,8 @@ def translation(
     Frame
         Without rotation.
     """
-    moves = (jnp.asarray(q, float) for q in (offset, velocity, acceleration))
-    return Frame(jnp.array([0.0, 0.0, 1.0]), jnp.zeros(()), jnp.zeros(()), *moves)
+    moves = (np.asarray(q, float) for q in (offset, velocity, acceleration))
+    return Frame(np.array([0.0, 0.0, 1.0]), np.zeros(()), np.zeros(()), *moves)
 
 
 def blade_motions(
@@ -147,14 +146,13 @@ def blade_motions(
     return [(*outer, rotation(z, azimuth, rotation_speed)) for azimuth in angles]
 
 
-@jax.jit
 def poses(motion: Motion, times: ArrayLike) -> Poses:
     """Position and orientation of the innermost frame, with exact first and second derivatives.
 
     Parameters
     ----------
     motion : Motion
-        The chain of frames.
+        The chain of frames; it is prescribed, not differentiated.
     times : (n_times,) array_like
         Source times tau [s].
 
@@ -163,18 +161,22 @@ def poses(motion: Motion, times: ArrayLike) -> Poses:
     Poses
         At each time.
     """
-
-    def pose(time: Array) -> tuple[Array, Array]:
-        return _pose(motion, time)
-
-    def rates(time: Array) -> tuple[tuple[Array, Array], tuple[Array, Array]]:
-        return jax.jvp(pose, (time,), (jnp.ones_like(time),))
-
-    def at(time: Array) -> Poses:
-        (here, first), (_, second) = jax.jvp(rates, (time,), (jnp.ones_like(time),))
-        return Poses(here[0], first[0], second[0], here[1], first[1], second[1])
-
-    return jax.vmap(at)(jnp.asarray(times, float))
+    tau = np.asarray(times, float)
+    still = np.zeros((tau.size, 3, 3))
+    # Values and two derivatives in time; the product of two such is by Leibniz' rule.
+    turn = [still + np.eye(3), still, still]
+    origin = [np.zeros((tau.size, 3))] * 3
+    for frame in motion:
+        acceleration = np.asarray(frame.acceleration) + 0 * tau[:, None]
+        velocity = np.asarray(frame.velocity) + acceleration * tau[:, None]
+        step = (
+            np.asarray(frame.offset)
+            + (np.asarray(frame.velocity) + 0.5 * acceleration * tau[:, None]) * tau[:, None]
+        )
+        moved = _product(turn, [q[..., None] for q in (step, velocity, acceleration)])
+        origin = [o + m[..., 0] for o, m in zip(origin, moved, strict=True)]
+        turn = _product(turn, _rotations(frame, tau))
+    return Poses(*turn, *origin)
 
 
 def place(pose: Poses, points: ArrayLike) -> tuple[Array, Array, Array]:
@@ -192,10 +194,10 @@ def place(pose: Poses, points: ArrayLike) -> tuple[Array, Array, Array]:
     position, velocity, acceleration : (n_times, n, 3) arrays
         On the ground [m], [m/s], [m/s^2].
     """
-    x = jnp.asarray(points, float)
+    x = np.asarray(points, float)
 
     def moved(origin: Array, matrix: Array) -> Array:
-        return origin[:, None] + jnp.einsum("tij,nj->tni", matrix, x)
+        return origin[:, None] + x @ np.swapaxes(matrix, -1, -2)
 
     return (
         moved(pose.origin, pose.rotation),
@@ -204,17 +206,18 @@ def place(pose: Poses, points: ArrayLike) -> tuple[Array, Array, Array]:
     )
 
 
-def _pose(motion: Motion, time: Array) -> tuple[Array, Array]:
-    turn, origin = jnp.eye(3), 0.0 * time * jnp.ones(3)
-    for frame in motion:
-        step = frame.offset + (frame.velocity + 0.5 * frame.acceleration * time) * time
-        origin = origin + turn @ step
-        turn = turn @ _rotation_matrix(frame.axis, frame.angle + frame.rate * time)
-    return turn + 0.0 * time, origin
+def _product(a: list[Array], b: list[Array]) -> list[Array]:
+    return [
+        a[0] @ b[0],
+        a[1] @ b[0] + a[0] @ b[1],
+        a[2] @ b[0] + 2 * a[1] @ b[1] + a[0] @ b[2],
+    ]
 
 
-def _rotation_matrix(axis: Array, angle: Array) -> Array:
-    """Rodrigues' formula."""
-    x, y, z = axis
-    cross = jnp.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
-    return jnp.eye(3) + jnp.sin(angle) * cross + (1 - jnp.cos(angle)) * cross @ cross
+def _rotations(frame: Frame, tau: Array) -> list[Array]:
+    """Rotation matrices by Rodrigues' formula and their derivatives."""
+    (x, y, z), rate = np.asarray(frame.axis), float(frame.rate)
+    cross = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
+    angle = (float(frame.angle) + rate * tau)[:, None, None]
+    matrix = np.eye(3) + np.sin(angle) * cross + (1 - np.cos(angle)) * cross @ cross
+    return [matrix, rate * cross @ matrix, rate**2 * cross @ cross @ matrix]

@@ -53,6 +53,93 @@ def unsteady_loads(position: ArrayLike, force: ArrayLike, force_rate: ArrayLike)
     return UnsteadySources(x, jnp.zeros_like(x), jnp.zeros_like(x), f, rate)
 
 
+@record
+class PeriodicLoads:
+    """Forces of a blade that repeat every turn.
+
+    Attributes
+    ----------
+    position : (n, 3) array
+        Where the forces act, in the blade's frame [m].
+    force : (n_azimuths, n, 3) array
+        Force ON THE FLUID, components in the blade's frame [N], at equally spaced azimuths of the
+        blade from 0; the last row is not the first again.
+    """
+
+    position: Array
+    force: Array
+
+
+@record
+class AperiodicLoads:
+    """Forces of each blade of a rotor that change in time as they like.
+
+    Attributes
+    ----------
+    position : (n, 3) array
+        Where the forces act, in the blade's frame [m].
+    times : (n_times,) array
+        Source times, increasing [s].
+    force : (n_blades, n_times, n, 3) array
+        Force ON THE FLUID, components in the frame of its blade [N].
+    """
+
+    position: Array
+    times: Array
+    force: Array
+
+
+BladeLoads = PointLoads | PeriodicLoads | AperiodicLoads
+
+
+def blade_loads(
+    loads: BladeLoads, blade: int, azimuth: float, rotation_speed: float, times: ArrayLike
+) -> PointLoads | UnsteadySources:
+    """Forces of one blade at given source times.
+
+    Parameters
+    ----------
+    loads : PointLoads, PeriodicLoads or AperiodicLoads
+        Constant, the same for every blade at its azimuth, or each blade's own.
+    blade : int
+        Which, counted from 0.
+    azimuth : float
+        Of the blade at time 0 [rad].
+    rotation_speed : float
+        Omega [rad/s].
+    times : (n_times,) array_like
+        Source times [s].
+
+    Returns
+    -------
+    PointLoads or UnsteadySources
+        For `loading_history`.
+
+    Raises
+    ------
+    ValueError
+        If a table over time does not cover the source times.
+
+    Notes
+    -----
+    Tables are interpolated, and differentiated, by cubic splines.
+    """
+    if isinstance(loads, PointLoads):
+        return loads
+    tau = np.asarray(times, float)
+    if isinstance(loads, PeriodicLoads):
+        table = np.asarray(loads.force)
+        angles = np.linspace(0, 2 * np.pi, len(table), endpoint=False)
+        value, slope, _ = sample(table, angles, azimuth + rotation_speed * tau, 2 * np.pi)
+        return unsteady_loads(loads.position, value, rotation_speed * slope)
+    clock = np.asarray(loads.times, float)
+    # Rows farther away change a cubic spline by less than 1e-13.
+    first, last = np.searchsorted(clock, [tau.min(), tau.max()]) + np.array([-24, 24])
+    near = slice(max(int(first), 0), int(last))
+    value, rate, _ = sample(np.asarray(loads.force[blade, near]), clock[near], tau)
+    return unsteady_loads(loads.position, value, rate)
+
+
 def sample(
     values: ArrayLike, value_times: ArrayLike, times: ArrayLike, period: float | None = None
 ) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:

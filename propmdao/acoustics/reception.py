@@ -53,10 +53,10 @@ def source_times(
     sound_speed : float
         [m/s].
     step : float, optional
-        Of the source times [s]; that of the observer times by default.
+        At most that between source times [s]; that of the observer times by default.
     multiple : int
-        The number of source times is rounded up to a multiple of this by later ones, so that the
-        blades of a rotor run the same compiled code; 1 where sources are not known any later.
+        The number of source times is rounded up to a multiple of this by a shorter step, so that
+        the blades of a rotor run the same compiled code.
 
     Returns
     -------
@@ -80,7 +80,7 @@ def source_times(
 
     def distance(tau: float, t: float) -> NDArray[np.float64]:
         pose = poses(motion, np.array([tau]))
-        y = np.asarray(pose.origin[0] + pose.rotation[0] @ center)
+        y = pose.origin[0] + pose.rotation[0] @ center
         apart: NDArray[np.float64] = start + velocity * t - y
         return np.asarray(np.sqrt(np.sum(apart**2, axis=1)))
 
@@ -101,16 +101,66 @@ def source_times(
     first = emitted(float(clock[0]) - margin, "first") - 2.5 * step
     last = emitted(float(clock[-1]) + margin, "last") + 2.5 * step
     n = multiple * int(np.ceil(((last - first) / step + 1) / multiple))
-    tau = first + step * np.arange(n, dtype=np.float64)
-    pose, some = poses(motion, tau), slice(None, None, -(-n // 64))
-    _, speed, _ = place(jax.tree.map(lambda q: q[some], pose), x)
-    mach = float(jnp.linalg.norm(speed, axis=-1).max()) / sound_speed
+    tau = np.linspace(first, last, n)
+    _, speed, _ = place(poses(motion, tau[:: -(-n // 64)]), x)
+    mach = float(np.linalg.norm(speed, axis=-1).max()) / sound_speed
     if not mach < 1:
         raise ValueError(
             f"sources must be slower than sound ({sound_speed:g} m/s); "
             f"their Mach number is {mach:.3f}"
         )
     return tau
+
+
+def require_outside(
+    motion: Motion, points: ArrayLike, observers: Observers, times: ArrayLike, name: str
+) -> None:
+    """Refuse observers that come into the region which the sources sweep.
+
+    That region is the sphere around the hub that holds all of the points, the hub being what is
+    nearest to them on the axis of the fastest turning frame; without one it is the sphere around
+    the points.
+
+    Parameters
+    ----------
+    motion : Motion
+        Of the points' frame.
+    points : (n, 3) array_like
+        In the frame [m].
+    observers : Observers
+        Who listens.
+    times : (n_times,) array_like
+        When [s]; looked at are 1000 of them, evenly spaced.
+    name : str
+        Of the sources, to be named.
+
+    Raises
+    ------
+    ValueError
+        If an observer is not farther from the hub than the farthest point: it names the distance.
+    """
+    clock = np.asarray(times, float)
+    clock = np.linspace(clock[0], clock[-1], min(clock.size, 1000))
+    x = np.asarray(points, float).reshape(-1, 3)
+    rates = [abs(float(frame.rate)) for frame in motion]
+    turning = int(np.argmax(rates)) + 1 if any(rates) else len(motion)
+    # The frames within the turning one keep their places in it.
+    inner = poses(motion[turning:], np.zeros(1))
+    x = inner.origin[0] + x @ inner.rotation[0].T
+    center = 0.5 * (x.min(axis=0) + x.max(axis=0))
+    if any(rates):
+        axis = motion[turning - 1].axis
+        center = axis * (axis @ center)
+    radius = float(np.linalg.norm(x - center, axis=1).max())
+    hub = place(poses(motion[:turning], clock), center[None])[0][:, 0]
+    velocity = np.asarray(observers.velocity, float)
+    for number, start in enumerate(np.asarray(observers.position, float), start=1):
+        distance = np.linalg.norm(start + velocity * clock[:, None] - hub, axis=1).min()
+        if not distance > radius:
+            raise ValueError(
+                f"observers must be outside of the sources' region; observer {number} comes to "
+                f"{distance:.3g} m from the centre of {name}, which reaches to {radius:.3g} m"
+            )
 
 
 def hear(arrival: Array, pressure: Array, start: Array, step: Array, n: int, each: int) -> Array:

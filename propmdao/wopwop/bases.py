@@ -86,8 +86,8 @@ def uniform_motion(
     if any(np.any(frame.rate) or np.any(frame.acceleration) for frame in chain):
         raise group.error("observers must be fixed or in uniform motion; these turn or accelerate")
     pose = poses(chain, np.zeros(1))
-    position = np.asarray(pose.origin[0]) + points @ np.asarray(pose.rotation[0]).T
-    return position, np.asarray(pose.velocity[0])
+    position = pose.origin[0] + points @ pose.rotation[0].T
+    return position, pose.velocity[0]
 
 
 def observer_points(group: Group) -> NDArray[np.float64]:

@@ -104,7 +104,7 @@ def loading_sources(
     force, rate = value * size, value_rate * size + value * size_rate
     if file.data == 2 and file.frame == 1:
         pose = poses(motion, tau)
-        turn, turn_rate = np.asarray(pose.rotation), np.asarray(pose.rotation_rate)
+        turn, turn_rate = pose.rotation, pose.rotation_rate
 
         def local(matrix: Array, vector: Array) -> Array:
             return np.einsum(
