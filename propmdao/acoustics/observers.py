@@ -234,15 +234,15 @@ def labels(positions: ArrayLike) -> list[str]:
     return names
 
 
-def require_outside(positions: ArrayLike, source_radius: float) -> None:
+def require_outside_rotor(positions: ArrayLike, tip_radius: float) -> None:
     """Refuse observers inside the source region, where Formulation 1A's sum does not hold.
 
     Parameters
     ----------
     positions : (n_observers, 3) array_like
         From the rotor centre [m].
-    source_radius : float
-        Of the sphere around the rotor centre that holds all sources: the tip radius [m].
+    tip_radius : float
+        Of the rotor: the sphere of this radius around its centre holds all sources [m].
 
     Raises
     ------
@@ -250,8 +250,8 @@ def require_outside(positions: ArrayLike, source_radius: float) -> None:
         If an observer is not outside that sphere, with its distance.
     """
     radius = directions(np.reshape(positions, (-1, 3))).radius
-    for k in np.flatnonzero(~(radius > source_radius)):
+    for k in np.flatnonzero(~(radius > tip_radius)):
         raise ValueError(
             f"observer {k + 1} is inside the source region: {radius[k]:.4g} m from the rotor "
-            f"centre; sources reach to {source_radius:.4g} m"
+            f"centre; sources reach to {tip_radius:.4g} m"
         )

@@ -11,7 +11,7 @@ from propmdao.acoustics.observers import (
     hemisphere,
     labels,
     point,
-    require_outside,
+    require_outside_rotor,
     sphere,
 )
 
@@ -105,13 +105,13 @@ def test_observers_are_named_by_what_tells_them_apart():
 
 
 def test_an_observer_among_the_blades_is_refused_with_its_distance():
-    require_outside(arc(0.14, [0.0, -45.0]), 0.1397)
+    require_outside_rotor(arc(0.14, [0.0, -45.0]), 0.1397)
     with pytest.raises(
         ValueError,
         match=r"observer 2 is inside the source region: 0.1 m from the rotor centre; "
         r"sources reach to 0.1397 m",
     ):
-        require_outside(arc([1.0, 0.1], 0.0), 0.1397)
+        require_outside_rotor(arc([1.0, 0.1], 0.0), 0.1397)
 
 
 def test_a_sonic_tip_is_refused_with_its_mach_number():
