@@ -113,6 +113,10 @@ def observer_points(group: Group) -> NDArray[np.float64]:
         n = group.count(count, 1)
         return np.linspace(group.number(f"{name}min"), group.number(f"{name}max"), max(n, 1))
 
+    if "filename" in group.values:
+        raise group.error(
+            "observers of a file (fileName) are not read: give xLoc ..., nbx ... or radius ..."
+        )
     if "radius" in group.values:
         theta, psi = line("theta", "nbtheta"), line("psi", "nbpsi")
         psi, theta = (a.ravel() for a in np.meshgrid(psi, theta, indexing="ij"))

@@ -1,4 +1,4 @@
-"""PSU-WOPWOP geometry ("patch") files, structured, single precision, version 1.0."""
+"""PSU-WOPWOP geometry ("patch") files, single precision, version 1.0."""
 
 from __future__ import annotations
 
@@ -8,8 +8,10 @@ from pathlib import Path
 from propmdao.wopwop.binary import Reader, Writer
 from propmdao.wopwop.zones import (
     CENTRED,
+    GRIDS,
     TIMES,
     Zone,
+    grid_of,
     read_header,
     read_zones,
     time_dependence,
@@ -46,7 +48,7 @@ def read_geometry(path: str | Path) -> GeometryFile:
     Parameters
     ----------
     path : str or Path
-        Structured, single precision, constant, periodic or aperiodic.
+        Single precision; constant, periodic or aperiodic.
 
     Returns
     -------
@@ -64,13 +66,13 @@ def read_geometry(path: str | Path) -> GeometryFile:
     units, comment = file.text(32), file.text(1024)
     file.expect(1, "file type (1 is a geometry)")
     n_zones = file.count("number of zones")
-    file.choose({1: "structured"}, "grid")
+    grid = file.choose(GRIDS, "grid")
     kind = file.choose(TIMES, "time dependence of the geometry")
     at_faces = file.choose(CENTRED, "place of the normals") == 2
     file.choose({1: "single"}, "precision")
     file.expect(0, "iblank flag")
     file.ints(1)
-    headers = [read_header(file, kind) for _ in range(n_zones)]
+    headers = [read_header(file, kind, grid, True) for _ in range(n_zones)]
     zones = read_zones(file, headers, 3 if at_faces else 6, at_faces)
     return GeometryFile(zones, units, comment, file.byte_order, file.padding)
 
@@ -96,6 +98,6 @@ def write_geometry(path: str | Path, geometry: GeometryFile) -> None:
     out.ints(1, 0)
     out.text(geometry.units, 32)
     out.text(geometry.comment, 1024)
-    out.ints(1, len(zones), 1, kind, 2 if at_faces else 1, 1, 0, 0)
+    out.ints(1, len(zones), grid_of(zones), kind, 2 if at_faces else 1, 1, 0, 0)
     write_zones(out, zones)
     out.save(Path(path))

@@ -1,4 +1,4 @@
-"""PSU-WOPWOP loading ("functional data") files, structured, single precision, version 1.0."""
+"""PSU-WOPWOP loading ("functional data") files, single precision, version 1.0."""
 
 from __future__ import annotations
 
@@ -8,8 +8,10 @@ from pathlib import Path
 from propmdao.wopwop.binary import Reader, Writer
 from propmdao.wopwop.zones import (
     CENTRED,
+    GRIDS,
     TIMES,
     Zone,
+    grid_of,
     read_header,
     read_zones,
     time_dependence,
@@ -63,7 +65,7 @@ def read_loading(path: str | Path) -> LoadingFile:
     Parameters
     ----------
     path : str or Path
-        Structured, single precision, constant, periodic or aperiodic.
+        Single precision; constant, periodic or aperiodic.
 
     Returns
     -------
@@ -81,7 +83,7 @@ def read_loading(path: str | Path) -> LoadingFile:
     comment = file.text(1024)
     file.expect(2, "file type (2 is a loading)")
     n_geometry_zones = file.count("number of zones of the geometry")
-    file.choose({1: "structured"}, "grid")
+    grid = file.choose(GRIDS, "grid")
     kind = file.choose(TIMES, "time dependence of the loading")
     at_faces = file.choose(CENTRED, "place of the data") == 2
     data = file.choose(DATA, "kind of the data")
@@ -92,7 +94,7 @@ def read_loading(path: str | Path) -> LoadingFile:
     for number in numbers:
         if not 1 <= abs(number) <= n_geometry_zones:
             raise file.error(f"zone numbers must be 1 ... {n_geometry_zones}; one is {number}")
-    headers = [read_header(file, kind) for _ in numbers]
+    headers = [read_header(file, kind, grid, False) for _ in numbers]
     zones = read_zones(file, headers, N_COMPONENTS[data])
     return LoadingFile(
         zones,
@@ -126,7 +128,8 @@ def write_loading(path: str | Path, loading: LoadingFile) -> None:
     out = Writer(loading.byte_order, loading.padding)
     out.ints(1, 0)
     out.text(loading.comment, 1024)
-    out.ints(2, loading.n_geometry_zones, 1, kind, 2 if loading.at_faces else 1)
+    grid = grid_of(loading.zones)
+    out.ints(2, loading.n_geometry_zones, grid, kind, 2 if loading.at_faces else 1)
     out.ints(loading.data, loading.frame, 1, 0, 0, len(loading.zones), *loading.zone_numbers)
     write_zones(out, loading.zones)
     out.save(Path(path))

@@ -28,7 +28,7 @@ _KEYS = {
     "environmentconstants": "rho c | p_ref gamma mu nu relhumidity gasconstant",
     "observerin": "nt tmin tmax nbbase attachedto xloc yloc zloc nbx xmin xmax nby ymin ymax nbz "
     "zmin zmax radius nbtheta thetamin thetamax nbpsi psimin psimax highpassfrequency "
-    "lowpassfrequency title | octaveflag octavenumber octaveapproxflag",
+    "lowpassfrequency title filename | octaveflag octavenumber octaveapproxflag",
     "containerin": "title nbcontainer nbbase dtau ntau taumin taumax patchgeometryfile "
     "patchloadingfile periodickeyoffset peggnoiseflag bpmnoiseflag bwinoiseflag | prefix",
     "cb": "translationtype translationvalue ah vh y0 angletype anglevalue omega psi0 axistype "

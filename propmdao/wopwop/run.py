@@ -10,7 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from propmdao.acoustics.advanced_time import loading_history, thickness_history
-from propmdao.acoustics.reception import Observers, source_times
+from propmdao.acoustics.reception import Observers, require_outside, source_times
+from propmdao.acoustics.rotors import segments
 from propmdao.wopwop.binary import WopwopFileError
 from propmdao.wopwop.cases import Case, Container, ObserverGrid, read_cases
 from propmdao.wopwop.geometry_file import read_geometry
@@ -100,20 +101,26 @@ def _container(
         if not radiates and load is None:
             continue
         try:
-            ends = any(
-                q is not None and q.keys is not None and q.period is None for q in (zone, load)
-            )
-            tau = source_times(
-                motion, source_points(zone), observers, times, c, container.step, 1 if ends else 32
-            )
-            if radiates:
-                panels = thickness_sources(zone, tau, container.key_offset)
-                heard[0] += thickness_history(
-                    panels, motion, tau, observers, times, case.density, c
+            require_outside(motion, source_points(zone), observers, times, "the sources")
+            changing = any(q is not None and q.keys is not None for q in (zone, load))
+            grounded = data is not None and data.frame == 1
+            n_unsteady = zone.values[0, 0].size if changing or grounded else 0
+            zone_heard = np.zeros_like(heard)
+            for part in segments(times.size, n_unsteady):
+                t = times[part]
+                multiple = max(32, t.size // 8)
+                tau = source_times(
+                    motion, source_points(zone), observers, t, c, container.step, multiple
                 )
-            if load is not None and data is not None:
-                forces = loading_sources(zone, load, data, tau, motion, container.key_offset)
-                heard[1] += loading_history(forces, motion, tau, observers, times, c)
+                if radiates:
+                    panels = thickness_sources(zone, tau, container.key_offset)
+                    zone_heard[0, :, part] = thickness_history(
+                        panels, motion, tau, observers, t, case.density, c
+                    )
+                if load is not None and data is not None:
+                    forces = loading_sources(zone, load, data, tau, motion, container.key_offset)
+                    zone_heard[1, :, part] = loading_history(forces, motion, tau, observers, t, c)
+            heard += zone_heard
         except WopwopFileError:
             raise
         except ValueError as error:

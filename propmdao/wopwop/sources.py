@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 import jax.numpy as jnp
 import numpy as np
 from numpy.typing import NDArray
@@ -17,7 +19,7 @@ _Rates = tuple[Array, Array, Array]
 
 def is_line(zone: Zone) -> bool:
     """Whether a geometry zone is a line of nodes, not a surface."""
-    return 1 in zone.values.shape[2:]
+    return zone.structured and 1 in zone.values.shape[2:]
 
 
 def source_points(zone: Zone) -> Array:
@@ -122,16 +124,23 @@ def _unsteady(position: _Rates, vector: tuple[Array, ...]) -> UnsteadySources:
 def _panels(zone: Zone) -> tuple[Array, Array]:
     """Return centres and outward vector areas of the cells, each (n_times, n, 3)."""
     nodes = np.moveaxis(zone.values[:, :3].astype(float), 1, -1)
-    a, b, c, d = _corners(nodes)
-    area = 0.5 * np.cross(c - a, d - b)
+    if zone.structured:
+        a, b, c, d = _corners(nodes)
+        center, area = _mean_of_corners(nodes), 0.5 * np.cross(c - a, d - b)
+    else:
+        center = _mean_of_faces(zone, nodes)
+        area = np.zeros_like(center)
+        for which, corners in _faces_by_size(zone):
+            around = nodes[:, corners] - center[:, which, None]
+            area[:, which] = 0.5 * np.cross(around, np.roll(around, -1, axis=2)).sum(axis=2)
     if zone.normals_at_faces is None:
-        normal = _mean_of_corners(np.moveaxis(zone.values[:, 3:].astype(float), 1, -1))
+        normal = _at_cells(zone, np.moveaxis(zone.values[:, 3:].astype(float), 1, -1))
     else:
         normal = np.moveaxis(zone.normals_at_faces.astype(float), 1, -1)
-    # The file's normals say which side is outside; areas come from the grid.
+    # The file's normals say which side is outside; areas come from the nodes.
     outward = np.where(np.sum(area * normal, axis=-1, keepdims=True) < 0, -1.0, 1.0)
     n_times = len(nodes)
-    return _mean_of_corners(nodes).reshape(n_times, -1, 3), (outward * area).reshape(n_times, -1, 3)
+    return center.reshape(n_times, -1, 3), (outward * area).reshape(n_times, -1, 3)
 
 
 def _line(zone: Zone) -> tuple[Array, Array]:
@@ -146,16 +155,37 @@ def _line(zone: Zone) -> tuple[Array, Array]:
 def _density(geometry: Zone, loading: Zone, at_faces: bool, line: bool) -> Array:
     """Return what is given per area or length where the sources are, (n_times, n, 1 or 3)."""
     given = np.moveaxis(loading.values.astype(float), 1, -1)
-    j_max, i_max = geometry.values.shape[2:]
-    wanted = (j_max - 1, i_max - 1) if at_faces and not line else (j_max, i_max)
-    if given.shape[1:3] != wanted:
+    wanted = geometry.values.shape[2:]
+    if at_faces and not line:
+        wanted = (len(geometry.faces),) if geometry.faces else tuple(n - 1 for n in wanted)
+    if given.shape[1:-1] != wanted:
+        sizes = (" x ".join(map(str, size[::-1])) for size in (wanted, given.shape[1:-1]))
         raise ValueError(
-            f"data of zone {loading.name!r} must be {wanted[1]} x {wanted[0]} to fit its geometry; "
-            f"they are {given.shape[2]} x {given.shape[1]}"
+            f"data of zone {loading.name!r} must be {next(sizes)} to fit its geometry; "
+            f"they are {next(sizes)}"
         )
     if not line and not at_faces:
-        given = _mean_of_corners(given)
+        given = _at_cells(geometry, given)
     return np.asarray(given.reshape(len(given), -1, given.shape[-1]))
+
+
+def _at_cells(zone: Zone, at_nodes: Array) -> Array:
+    return _mean_of_corners(at_nodes) if zone.structured else _mean_of_faces(zone, at_nodes)
+
+
+def _faces_by_size(zone: Zone) -> Iterator[tuple[NDArray[np.int64], NDArray[np.int64]]]:
+    """Numbers of the faces with 3, 4, ... corners, and these: (n, n_corners) nodes from 0."""
+    sizes = np.array([len(face) for face in zone.faces])
+    for size in np.unique(sizes):
+        which = np.flatnonzero(sizes == size)
+        yield which, np.array([zone.faces[i] for i in which]) - 1
+
+
+def _mean_of_faces(zone: Zone, at_nodes: Array) -> Array:
+    mean = np.empty((len(at_nodes), len(zone.faces), at_nodes.shape[-1]))
+    for which, corners in _faces_by_size(zone):
+        mean[:, which] = at_nodes[:, corners].mean(axis=2)
+    return mean
 
 
 def _corners(grid: Array) -> tuple[Array, Array, Array, Array]:

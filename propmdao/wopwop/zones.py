@@ -10,28 +10,32 @@ import numpy as np
 from propmdao.wopwop.binary import Floats, Reader, Writer
 
 TIMES = {1: "constant", 2: "periodic", 3: "aperiodic"}
+GRIDS = {1: "structured", 2: "unstructured"}
+STRUCTURED, UNSTRUCTURED = GRIDS
 CENTRED = {1: "at nodes", 2: "at faces"}
 _CONSTANT, _PERIODIC = 1, 2
 
 
 @dataclass(frozen=True)
 class Zone:
-    """One structured zone of a geometry or loading file.
+    """One zone of a geometry or loading file.
 
     Attributes
     ----------
     name : str
         At most 32 characters.
-    values : (n_times, n_components, j_max, i_max) float32 array
-        Of a geometry: x, y, z [m] of the nodes and the three components of their normals. Of a
-        loading: pressure [Pa], the force ON THE BLADE per area [N/m^2] or per length of a line
-        [N/m], or rho, rho u, rho v, rho w, p'. One time if constant.
+    values : (n_times, n_components, j_max, i_max) or (n_times, n_components, n) float32 array
+        Structured or unstructured. Of a geometry: x, y, z [m] of the nodes and the three components
+        of their normals. Of a loading: pressure [Pa], the force ON THE BLADE per area [N/m^2] or
+        per length of a line [N/m], or rho, rho u, rho v, rho w, p'. One time if constant.
     keys : (n_times,) float32 array or None
         Times [s], or periodic keys in any unit; None if constant.
     period : float or None
         Of a periodic zone [s].
-    normals_at_faces : (n_times, 3, j_max - 1, i_max - 1) float32 array or None
+    normals_at_faces : (n_times, 3, j_max - 1, i_max - 1) or (n_times, 3, n_faces) array or None
         Of a geometry with face-centred normals; `values` then has the nodes alone.
+    faces : tuple of tuple of int
+        Of an unstructured geometry: the nodes around each face, counted from 1.
     """
 
     name: str
@@ -39,6 +43,12 @@ class Zone:
     keys: Floats | None = None
     period: float | None = None
     normals_at_faces: Floats | None = None
+    faces: tuple[tuple[int, ...], ...] = ()
+
+    @property
+    def structured(self) -> bool:
+        """Whether the nodes are a grid."""
+        return self.values.ndim == 4
 
 
 @dataclass(frozen=True)
@@ -46,13 +56,18 @@ class ZoneHeader:
     """What the header of a zone says: its name, size and times."""
 
     name: str
-    i_max: int
-    j_max: int
+    shape: tuple[int, ...]
+    faces: tuple[tuple[int, ...], ...]
     period: float | None
     n_times: int | None
 
+    @property
+    def shape_of_faces(self) -> tuple[int, ...]:
+        """As many faces as there are, in the order of the nodes."""
+        return (len(self.faces),) if self.faces else tuple(max(n - 1, 1) for n in self.shape)
 
-def read_header(file: Reader, kind: int) -> ZoneHeader:
+
+def read_header(file: Reader, kind: int, grid: int, has_faces: bool) -> ZoneHeader:
     """Read the header of a zone.
 
     Parameters
@@ -61,16 +76,38 @@ def read_header(file: Reader, kind: int) -> ZoneHeader:
         At the beginning of the header.
     kind : int
         Time dependence, one of `TIMES`.
+    grid : int
+        One of `GRIDS`.
+    has_faces : bool
+        Whether the faces of an unstructured zone are listed: in geometry files.
 
     Returns
     -------
     ZoneHeader
         As it stands.
+
+    Raises
+    ------
+    WopwopFileError
+        If a face has fewer than three nodes or one that there is not.
     """
     name = file.text(32)
     period = float(file.floats(1)[0]) if kind == _PERIODIC else None
     n_times = file.count("number of times of a zone") if kind != _CONSTANT else None
-    return ZoneHeader(name, file.count("iMax"), file.count("jMax"), period, n_times)
+    if grid == STRUCTURED:
+        i_max, j_max = file.count("iMax"), file.count("jMax")
+        return ZoneHeader(name, (j_max, i_max), (), period, n_times)
+    n = file.count("number of nodes" if has_faces else "number of data")
+    faces = []
+    for _ in range(file.count("number of faces") if has_faces else 0):
+        n_nodes = file.count("number of nodes of a face")
+        face = file.ints(n_nodes)
+        if n_nodes < 3 or not 1 <= min(face) <= max(face) <= n:
+            raise file.error(
+                f"a face of zone {name!r} must have 3 or more of the nodes 1 ... {n}; it has {face}"
+            )
+        faces.append(tuple(face))
+    return ZoneHeader(name, (n,), tuple(faces), period, n_times)
 
 
 def read_zones(
@@ -111,10 +148,9 @@ def read_zones(
         for zone, head in enumerate(headers):
             if n_times is not None:
                 keys[zone].append(file.floats(1)[0])
-            values[zone].append(file.floats(n_components, head.j_max, head.i_max))
+            values[zone].append(file.floats(n_components, *head.shape))
             if face_normals:
-                faces = max(head.j_max - 1, 1), max(head.i_max - 1, 1)
-                normals[zone].append(file.floats(3, *faces))
+                normals[zone].append(file.floats(3, *head.shape_of_faces))
     file.end()
     for zone, head in enumerate(headers):
         if not all(np.isfinite(block).all() for block in (*values[zone], *normals[zone])):
@@ -126,6 +162,7 @@ def read_zones(
             None if n_times is None else np.stack(keys[zone]),
             head.period,
             np.stack(normals[zone]) if face_normals else None,
+            head.faces,
         )
         for zone, head in enumerate(headers)
     )
@@ -162,6 +199,29 @@ def time_dependence(zones: Sequence[Zone]) -> int:
     return kinds.pop()[0]
 
 
+def grid_of(zones: Sequence[Zone]) -> int:
+    """Say which of `GRIDS` all of the zones are.
+
+    Parameters
+    ----------
+    zones : sequence of Zone
+        Of one file.
+
+    Returns
+    -------
+    int
+        1 structured or 2 unstructured.
+
+    Raises
+    ------
+    ValueError
+        If they differ.
+    """
+    if len({zone.structured for zone in zones}) > 1:
+        raise ValueError("zones of a file must all be structured or all unstructured")
+    return STRUCTURED if zones[0].structured else UNSTRUCTURED
+
+
 def write_zones(out: Writer, zones: Sequence[Zone]) -> None:
     """Append headers and data of zones.
 
@@ -173,13 +233,16 @@ def write_zones(out: Writer, zones: Sequence[Zone]) -> None:
         Of the same time dependence.
     """
     for zone in zones:
-        n_times, _, j_max, i_max = zone.values.shape
         out.text(zone.name, 32)
         if zone.period is not None:
             out.floats(zone.period)
         if zone.keys is not None:
-            out.ints(n_times)
-        out.ints(i_max, j_max)
+            out.ints(len(zone.values))
+        out.ints(*zone.values.shape[:1:-1])  # iMax, jMax
+        if zone.faces:
+            out.ints(len(zone.faces))
+        for face in zone.faces:
+            out.ints(len(face), *face)
     for step in range(len(zones[0].values)):
         for zone in zones:
             if zone.keys is not None:

@@ -27,6 +27,8 @@ def assert_same(a, b) -> None:
         if field.name == "zones":
             for one, other in zip(left, right, strict=True):
                 assert_same(one, other)
+        elif field.name == "faces":
+            assert left == right
         else:
             np.testing.assert_array_equal(left, right)
 
@@ -87,6 +89,48 @@ def test_normals_at_faces(tmp_path, geometry):
     assert_same(GeometryFile((zone,)), read_geometry(tmp_path / "a.dat"))
 
 
+def unstructured(zone: Zone) -> Zone:
+    """The same surface: its nodes in a row, the faces listed; the first quadrangle as triangles."""
+    j_max, i_max = zone.values.shape[2:]
+    number = 1 + np.arange(j_max * i_max).reshape(j_max, i_max)
+    corners = number[:-1, :-1], number[:-1, 1:], number[1:, 1:], number[1:, :-1]
+    faces = [tuple(map(int, face)) for face in np.stack(corners, axis=-1).reshape(-1, 4)]
+    a, b, c, d = faces[0]
+    faces[:1] = [(a, b, c), (a, c, d)]
+    return Zone(zone.name, zone.values.reshape(1, 6, -1), faces=tuple(faces))
+
+
+def test_unstructured_round_trip(tmp_path, geometry):
+    """The header counts nodes and faces and lists the nodes around each."""
+    zone = unstructured(geometry.zones[0])
+    n, n_faces = zone.values.shape[2], len(zone.faces)
+    write_geometry(tmp_path / "g.dat", GeometryFile((zone,)))
+    data = (tmp_path / "g.dat").read_bytes()
+    assert np.frombuffer(data[1076:1080], "<i4") == 2
+    assert np.frombuffer(data[1132:1144], "<i4").tolist() == [n, n_faces, 3]
+    assert len(data) == 1100 + 32 + 8 + 2 * 16 + (n_faces - 2) * 20 + 24 * n
+    assert_same(GeometryFile((zone,)), read_geometry(tmp_path / "g.dat"))
+    values = Zone("pressure", np.ones((1, 1, n_faces), np.float32))
+    loading = LoadingFile((values,), (1,), 1, data=1, at_faces=True)
+    write_loading(tmp_path / "l.dat", loading)
+    assert (tmp_path / "l.dat").stat().st_size == 1080 + 4 + 36 + 4 * n_faces
+    assert_same(loading, read_loading(tmp_path / "l.dat"))
+
+
+def test_faces_of_nodes_that_are_not_there(tmp_path, geometry):
+    zone = unstructured(geometry.zones[0])
+    zone = dataclasses.replace(zone, faces=((1, 2, 99), *zone.faces[1:]))
+    write_geometry(tmp_path / "g.dat", GeometryFile((zone,)))
+    with pytest.raises(WopwopFileError, match=r"nodes 1 \.\.\. 55; it has \[1, 2, 99\]"):
+        read_geometry(tmp_path / "g.dat")
+
+
+def test_grids_and_faces_do_not_go_into_one_file(tmp_path, geometry):
+    zones = (geometry.zones[1], unstructured(geometry.zones[0]))
+    with pytest.raises(ValueError, match="must all be structured or all unstructured"):
+        write_geometry(tmp_path / "g.dat", GeometryFile(zones))
+
+
 class TestBadFiles:
     @pytest.fixture
     def file(self, tmp_path, geometry) -> Path:
@@ -132,7 +176,7 @@ class TestBadFiles:
         [
             (1, 2, "version must be 1; it is 2"),
             (268, 0, "number of zones must be at least 1; it is 0"),
-            (269, 2, r"grid must be one of 1 \(structured\); it is 2"),
+            (269, 3, r"grid must be one of 1 \(structured\), 2 \(unstructured\); it is 3"),
             (270, 5, "time dependence of the geometry must be one of .* it is 5"),
             (272, 2, r"precision must be one of 1 \(single\); it is 2"),
             (283, -5, "iMax must be at least 1; it is -5"),

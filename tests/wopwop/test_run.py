@@ -148,6 +148,14 @@ def test_a_case_that_is_wholly_understood_warns_of_nothing(make_case):
         ({"ObserverIn": {"attachedTo": "tail"}}, "attachedTo 'tail': there is no such container"),
         ({"ObserverIn": {"attachedTo": "Blade 1"}}, "observers must be fixed or in uniform motion"),
         ({"omega": 800.0}, "sources must be slower than sound"),
+        (
+            {"ObserverIn": {"fileName": "grid.xyz"}},
+            r"observers of a file \(fileName\) are not read",
+        ),
+        (
+            {"ObserverIn": {"xMin": 0.2, "zMin": 0.0}},
+            "observer 1 comes to 0.2 m from the centre of the sources, which reaches to 0.5 m",
+        ),
     ],
 )
 def test_bad_cases_are_one_clear_line(make_case, changes, message):

@@ -62,6 +62,31 @@ def test_a_flapping_surface_keeps_its_panels_and_gains_a_velocity(geometry):
     np.testing.assert_allclose(sources.position_rate[:, 0, 2], speed, atol=1e-3 * 0.01 * omega)
 
 
+def test_an_unstructured_surface_is_the_same_surface(geometry):
+    """Quadrangles in a list, one of them as two triangles: the same areas and forces."""
+    grid = geometry.zones[0]
+    j_max, i_max = grid.values.shape[2:]
+    number = 1 + np.arange(j_max * i_max).reshape(j_max, i_max)
+    corners = number[:-1, :-1], number[:-1, 1:], number[1:, 1:], number[1:, :-1]
+    faces = np.stack(corners, axis=-1).reshape(-1, 4).tolist()
+    a, b, c, d = faces.pop(5)
+    faces += [[a, b, c], [a, c, d]]
+    free = Zone("free", grid.values.reshape(1, 6, -1), faces=tuple(map(tuple, faces)))
+    expected, product = (thickness_sources(zone, TAU) for zone in (grid, free))
+    kept = np.delete(np.arange(expected.vector.shape[1]), 5)
+    np.testing.assert_allclose(product.vector[:, :-2], expected.vector[:, kept], atol=1e-9)
+    np.testing.assert_allclose(product.position[:, :-2], expected.position[:, kept], atol=1e-8)
+    np.testing.assert_allclose(product.vector[:, -2:].sum(axis=1), expected.vector[:, 5], atol=1e-9)
+    pressure = Zone("p", np.full((1, 1, len(faces)), 100.0, np.float32))
+    file = LoadingFile((pressure,), (1,), 1, data=1, at_faces=True)
+    forces = loading_sources(free, pressure, file, TAU, ())
+    np.testing.assert_allclose(forces.vector, 100.0 * product.vector, rtol=1e-6)
+    at_nodes = Zone("p", np.full((1, 1, number.size), 100.0, np.float32))
+    file = LoadingFile((at_nodes,), (1,), 1, data=1)
+    forces = loading_sources(free, at_nodes, file, TAU, ())
+    np.testing.assert_allclose(forces.vector, 100.0 * product.vector, rtol=1e-6)
+
+
 @pytest.mark.parametrize(("data", "message"), [(3, "flow data"), (1, "surface pressure is given")])
 def test_data_that_are_not_computed(geometry, loading, data, message):
     file = dataclasses.replace(loading, data=data)
