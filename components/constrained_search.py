@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from typing import Any
 
 import numpy as np
@@ -38,13 +38,18 @@ class Generation:
     failed: int
 
 
+class SearchStopped(Exception):
+    """Raised by an evaluation to end the search; its message says why."""
+
+
 class ConstrainedSearch:
     """``scipy.optimize.differential_evolution`` on candidates that know their violation.
 
     Parameters
     ----------
     evaluate : callable
-        Takes a position (n_variables,) and returns its `Candidate`, with at least one violation.
+        Takes a list of positions (n_variables,) and yields their candidates in that order, each
+        with at least one violation.
     improved : callable
         Called with every candidate that is better than all before it and the number of
         evaluations so far, right after its evaluation.
@@ -65,7 +70,7 @@ class ConstrainedSearch:
 
     def __init__(
         self,
-        evaluate: Callable[[Array], Candidate],
+        evaluate: Callable[[list[Array]], Iterator[Candidate]],
         improved: Callable[[Candidate, int], None],
         progress: tqdm,
     ) -> None:
@@ -79,7 +84,7 @@ class ConstrainedSearch:
         self._progress = progress
         self._memo: dict[bytes, Candidate] = {}
 
-    def run(self, population: Array, **scipy_options: Any) -> tuple[Candidate, bool]:
+    def run(self, population: Array, **scipy_options: Any) -> tuple[Candidate, str]:
         """Search from an initial population.
 
         Parameters
@@ -93,27 +98,32 @@ class ConstrainedSearch:
         -------
         best : Candidate
             Best candidate of all that were evaluated.
-        converged : bool
-            True when the population converged on a feasible candidate.
+        ending : str
+            "converged" when the population converged on a feasible candidate, "stopped" after the
+            last generation, or the message of a `SearchStopped`.
         """
         # `vectorized` hands over a whole generation at once. There is always a constraint and scipy
         # calls it first, so that exceptions of the model do not pass through the objective call,
         # which would rename them. Its own count of evaluations leaves out the infeasible ones.
-        result = differential_evolution(
-            self._energies,
-            init=population,
-            constraints=NonlinearConstraint(self._violations, -np.inf, 0.0),
-            vectorized=True,
-            updating="deferred",
-            polish=False,
-            callback=self._end_generation,
-            **scipy_options,
-        )
+        try:
+            result = differential_evolution(
+                self._energies,
+                init=population,
+                constraints=NonlinearConstraint(self._violations, -np.inf, 0.0),
+                vectorized=True,
+                updating="deferred",
+                polish=False,
+                callback=self._end_generation,
+                **scipy_options,
+            )
+            ending = "converged" if result.success else "stopped"
+        except SearchStopped as stop:
+            ending = str(stop)
         assert self.best is not None
-        return self.best, bool(result.success)
+        return self.best, ending
 
-    def summary(self, converged: bool) -> str:
-        """Return one line: what was found, and after how much."""
+    def summary(self, ending: str) -> str:
+        """Return one line: what was found, how the search ended, and after how much."""
         best = self.best
         assert best is not None
         if best.feasible:
@@ -123,41 +133,52 @@ class ConstrainedSearch:
         else:
             found = f"no feasible design, smallest total violation {best.violation.sum():.3g}"
         return (
-            f"{found}; {'converged' if converged else 'stopped'} after {len(self.history) - 1} "
-            f"generations, {self.evaluations} designs, {self.failed} of them failed"
+            f"{found}; {ending} after {max(len(self.history) - 1, 0)} generations, "
+            f"{self.evaluations} designs, {self.failed} of them failed"
         )
 
     def _energies(self, positions: Array) -> Array:
         """Objectives at the columns of ``positions`` (n_variables, n_candidates)."""
-        return np.array([self._candidate(position).energy for position in positions.T])
+        return np.array([candidate.energy for candidate in self._candidates(positions.T)])
 
     def _violations(self, positions: Array) -> Array:
         """Violations (n_constraints, n_candidates) at the columns of ``positions``, or at one."""
         if positions.ndim == 1:
-            return self._candidate(positions).violation
-        violations = np.stack([self._candidate(p).violation for p in positions.T], axis=-1)
+            (candidate,) = self._candidates(positions[None])
+            return candidate.violation
+        candidates = self._candidates(positions.T)
         if not self.history:  # scipy does not call back after the initial population
             self._record_generation()
-        return violations
+        return np.stack([candidate.violation for candidate in candidates], axis=-1)
 
-    def _candidate(self, position: Array) -> Candidate:
-        """Evaluate a position at its first use only.
+    def _candidates(self, positions: Array) -> list[Candidate]:
+        """Evaluate those of the positions (n_candidates, n_variables) that are new, in one call.
 
         Scipy asks again for the best one every generation, and for the whole population as long as
         none of it is feasible.
         """
-        key = position.tobytes()
-        if key not in self._memo:
-            candidate = self._memo[key] = self._evaluate(position)
-            self.evaluations += 1
-            if candidate.failure:
-                self.failed += 1
-                self.last_failure = candidate.failure
-            if self.best is None or candidate.rank < self.best.rank:
-                self.best = candidate
-                self._improved(candidate, self.evaluations)
-            self._progress.update()
-        return self._memo[key]
+        keys = [position.tobytes() for position in positions]
+        new = {
+            key: position
+            for key, position in zip(keys, positions, strict=True)
+            if key not in self._memo
+        }
+        if new:
+            evaluated = self._evaluate(list(new.values()))
+            for key, candidate in zip(new, evaluated, strict=True):
+                self._memo[key] = candidate
+                self._count(candidate)
+        return [self._memo[key] for key in keys]
+
+    def _count(self, candidate: Candidate) -> None:
+        self.evaluations += 1
+        if candidate.failure:
+            self.failed += 1
+            self.last_failure = candidate.failure
+        if self.best is None or candidate.rank < self.best.rank:
+            self.best = candidate
+            self._improved(candidate, self.evaluations)
+        self._progress.update()
 
     def _end_generation(self, intermediate_result: OptimizeResult) -> None:
         # Only members of the population are asked for again.

@@ -2,25 +2,32 @@
 
 from __future__ import annotations
 
-import os
+import contextlib
+import math
+import time
+from collections.abc import Generator, Iterator, Sequence
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 import openmdao.api as om
 from openmdao.core.driver import Driver, RecordingDebugging
-from scipy.stats import qmc
 from tqdm import tqdm
 
 from propmdao.components.best_design_file import write_best_design
-from propmdao.components.candidate import Array, Candidate, constraint_violations
-from propmdao.components.constrained_search import ConstrainedSearch, Generation
-
-STRATEGIES = tuple(
-    mutation + crossover
-    for mutation in ("best1", "best2", "rand1", "rand2", "randtobest1", "currenttobest1")
-    for crossover in ("bin", "exp")
+from propmdao.components.candidate import Array, Candidate
+from propmdao.components.checkpoint import Checkpoint
+from propmdao.components.constrained_search import ConstrainedSearch, Generation, SearchStopped
+from propmdao.components.design_runs import DesignRuns
+from propmdao.components.model_pool import ModelRun, model_pool
+from propmdao.components.search_options import (
+    SAMPLERS,
+    declare_file_options,
+    declare_search_options,
+    declare_worker_options,
 )
-SAMPLERS = {"latinhypercube": qmc.LatinHypercube, "sobol": qmc.Sobol, "halton": qmc.Halton}
+from propmdao.worker_processes import WorkerLostError
+
 SMALLEST_POPULATION = 5  # what strategies with two differences draw from
 CANDIDATES_PER_VARIABLE = 15  # scipy's default
 
@@ -42,7 +49,15 @@ class DifferentialEvolutionDriver(Driver):
       error in the model and ends the run.
     - The first member of the initial population is the current design, clipped to its bounds.
     - After an interrupt (Ctrl-C) the model is run once at the best design found so far, then
-      ``KeyboardInterrupt`` propagates.
+      ``KeyboardInterrupt`` propagates. The same holds when a worker dies (``WorkerLostError``).
+    - With ``checkpoint`` every design is on disk once it is evaluated. Run again after whatever
+      ended it, even a kill, the search takes the designs it knows from there and goes on to the
+      same end; with more generations or time than before it goes on from its end.
+    - With ``n_workers`` or ``executor`` the designs of a generation run side by side, on Problems
+      that the workers build by ``problem_factory`` and that start from the values of this one.
+      The search, its files and its recorded cases are the same, whatever the number of workers.
+    - Cases that come from a checkpoint are recorded again, with design variables, independent
+      variables, objective and constraints as they were; outputs that it does not hold are nan.
 
     When no feasible design was found, ``fail`` is True and the Problem is left at the design with
     the smallest total violation, or where every analysis failed at the initial design.
@@ -95,42 +110,9 @@ class DifferentialEvolutionDriver(Driver):
         return self._search.last_failure if self._search else ""
 
     def _declare_options(self) -> None:
-        declare = self.options.declare
-        declare("max_gen", 100, types=int, lower=0, desc="Generations after the initial one.")
-        declare("pop_size", 0, types=int, lower=0, desc="Designs per generation; 0: 15 a variable.")
-        declare(
-            "tol",
-            1e-3,
-            lower=0.0,
-            desc="Converged when the standard deviation of the population's scaled objectives is "
-            "below tol times the magnitude of their mean.",
-        )
-        declare("seed", None, types=int, allow_none=True, desc="Same seed, same search.")
-        declare("strategy", "best1bin", values=STRATEGIES, desc="Mutation and crossover.")
-        declare("init", "latinhypercube", values=tuple(SAMPLERS), desc="Initial population.")
-        declare(
-            "mutation",
-            (0.5, 1.0),
-            types=(float, tuple),
-            desc="Differential weight in [0, 2); of a pair each generation draws one in between.",
-        )
-        declare("recombination", 0.7, lower=0.0, upper=1.0, desc="Crossover probability.")
-        declare(
-            "equality_tolerance",
-            1e-4,
-            lower=0.0,
-            desc="Largest deviation from `equals` that counts as met, in driver scaling.",
-        )
-        declare(
-            "best_file",
-            "best_design.json",
-            types=(str, os.PathLike),
-            allow_none=True,
-            desc="JSON file that holds the best feasible design so far at any time; a relative "
-            "path lies in the Problem's outputs directory; None: no file.",
-        )
-        declare("progress", True, types=bool, desc="Progress bar on stderr, if it is a terminal.")
-        declare("disp", True, types=bool, desc="Print a summary at the end.")
+        declare_search_options(self.options)
+        declare_worker_options(self.options)
+        declare_file_options(self.options)
 
     def _get_name(self) -> str:
         return "DifferentialEvolution"
@@ -172,9 +154,20 @@ class DifferentialEvolutionDriver(Driver):
         self._check_for_invalid_desvar_values()
         if not self._designvars:
             raise RuntimeError(f"{self.msginfo} needs a design variable; the model has none")
+        self._runs = DesignRuns(self, self.options["equality_tolerance"])
+        seed = self.options["seed"]
+        self._checkpoint = self._open_checkpoint()
+        if self._checkpoint is not None:
+            seed = self._checkpoint.seed
+        budget = self.options["time_budget"]
+        self._deadline = math.inf if budget is None else time.monotonic() + budget
+        workers = {
+            name: self.options[name] for name in ("n_workers", "executor", "problem_factory")
+        }
+        with model_pool(self._problem().model, **workers) as self._pool:
+            return self._run_search(np.random.default_rng(seed))
 
-        self._read_problem()
-        rng = np.random.default_rng(self.options["seed"])
+    def _run_search(self, rng: np.random.Generator) -> bool:
         population = self._initial_population(rng)
         with tqdm(
             total=len(population) * (self.options["max_gen"] + 1),
@@ -183,106 +176,121 @@ class DifferentialEvolutionDriver(Driver):
             disable=None if self.options["progress"] else True,
         ) as progress:
             search = self._search = ConstrainedSearch(
-                self._evaluate_position, self._improved, progress
+                self._evaluate_positions, self._improved, progress
             )
             passed_on = ("strategy", "mutation", "recombination", "tol")
             try:
-                best, converged = search.run(
+                best, ending = search.run(
                     population,
                     # A fixed variable has one position, so that no design is run twice.
-                    bounds=[(0.0, float(free)) for free in self._upper > self._lower],
+                    bounds=[(0.0, float(free)) for free in self._runs.upper > self._runs.lower],
                     maxiter=self.options["max_gen"],
                     rng=rng,
                     **{name: self.options[name] for name in passed_on},
                 )
-            except KeyboardInterrupt:
+            except (KeyboardInterrupt, WorkerLostError) as error:
                 if search.best is not None:
-                    self._evaluate(search.best.design)
+                    self._conclude(search.best.design, None)
+                if self._checkpoint:
+                    error.add_note(
+                        f"The {search.evaluations} designs evaluated so far are in"
+                        f" '{self._checkpoint.path}': run again to go on from there."
+                    )
                 raise
-        self._evaluate(best.design)
+        self._conclude(best.design, None)
         self.fail = not best.feasible
-        self.message = search.summary(converged)
+        self.message = search.summary(ending)
         if self.options["disp"]:
             print(f"{self._get_name()}: {self.message}")
         return self.fail
 
-    def _read_problem(self) -> None:
-        """Take the bounds and the initial state from the Problem."""
-        metas = self._designvars.values()
-        self._lower, self._upper = (
-            np.concatenate([np.broadcast_to(meta[side], meta["size"]) for meta in metas])
-            for side in ("lower", "upper")
-        )
-        self._n_constraints = sum(meta["size"] for meta in self._cons.values())
-        self._initial_outputs = self._outputs().asarray(copy=True)
-
-    def _outputs(self) -> Any:
-        return self._problem().model.get_nonlinear_vectors()[1]
-
     def _initial_population(self, rng: np.random.Generator) -> Array:
         """Return positions in the unit cube (pop_size, n_variables), the current design first."""
-        n_variables = self._lower.size
+        n_variables = self._runs.lower.size
+        sampler = SAMPLERS[self.options["init"]](n_variables, rng=rng)
+        population: Array = sampler.random(self._population_size())
+        population[0] = self._runs.current_position()
+        return population
+
+    def _population_size(self) -> int:
         size = self.options["pop_size"] or max(
-            SMALLEST_POPULATION, CANDIDATES_PER_VARIABLE * n_variables
+            SMALLEST_POPULATION, CANDIDATES_PER_VARIABLE * self._runs.lower.size
         )
         if size < SMALLEST_POPULATION:
             raise ValueError(
                 f"{self.msginfo}: pop_size must be at least {SMALLEST_POPULATION}; it is {size}"
             )
-        population = SAMPLERS[self.options["init"]](n_variables, rng=rng).random(size)
-        current = np.concatenate(list(self.get_design_var_values(driver_scaling=False).values()))
-        span = self._upper - self._lower
-        from_lower = np.clip(current, self._lower, self._upper) - self._lower
-        population[0] = from_lower / np.where(span > 0.0, span, 1.0)
-        return population
+        return int(size)
 
-    def _evaluate_position(self, position: Array) -> Candidate:
-        design = self._lower + position * (self._upper - self._lower)
-        return self._evaluate(np.clip(design, self._lower, self._upper))
+    def _open_checkpoint(self) -> Checkpoint | None:
+        if self.options["checkpoint"] is None:
+            return None
+        # When to stop is no part of it: a search may be resumed with more generations.
+        options = ("seed", "strategy", "init", "mutation", "recombination", "equality_tolerance")
+        search = {name: self.options[name] for name in options}
+        search |= {"pop_size": self._population_size(), **self._runs.description()}
+        checkpoint = Checkpoint(self._output_file("checkpoint"), search)
+        entry = checkpoint.first_success()
+        if entry is not None:
+            self._runs.set_design(np.array(entry["design"]))
+            self._run_solve_nonlinear()
+            checkpoint.require_same_model(entry, self._runs.responses())
+        return checkpoint
 
-    def _evaluate(self, design: Array) -> Candidate:
-        """Run the model at a design, as one driver case."""
-        # Every run starts alike: states of a diverged solver would spoil the runs after it.
-        self._outputs().set_val(self._initial_outputs)
-        start = 0
-        for name, meta in self._designvars.items():
-            stop = start + meta["size"]
-            self._set_design_var(name, design[start:stop], units=meta["units"])
-            start = stop
+    def _output_file(self, option: str) -> Path:
+        """Path that an option gives, in the Problem's outputs directory unless it is absolute."""
+        path: Path = self._problem().get_outputs_dir() / self.options[option]
+        path.parent.mkdir(parents=True, exist_ok=True)
+        return path
+
+    def _evaluate_positions(self, positions: Sequence[Array]) -> Iterator[Candidate]:
+        """Evaluate designs in their order: from the checkpoint, then here or on the workers."""
+        designs = [self._runs.at_position(position) for position in positions]
+        checkpoint = self._checkpoint
+        entries = checkpoint.replay(designs) if checkpoint else []
+        for design, entry in zip(designs, entries, strict=False):
+            outputs = self._runs.outputs_from(design, entry["outputs"])
+            yield self._conclude(design, ModelRun(outputs, entry["failure"]))
+        with contextlib.closing(self._model_runs(designs[len(entries) :])) as runs:
+            for design in designs[len(entries) :]:
+                if time.monotonic() > self._deadline and self.iter_count > 0:
+                    raise SearchStopped("stopped at the end of its time budget")
+                candidate = self._conclude(design, next(runs))
+                if checkpoint:
+                    responses = {} if candidate.failure else self._runs.responses()
+                    checkpoint.append(design, candidate.failure, responses)
+                yield candidate
+
+    def _model_runs(self, designs: list[Array]) -> Generator[ModelRun | None, None, None]:
+        """Runs of the workers at designs, or as many None: to be run here."""
+        if self._pool is None:
+            yield from [None] * len(designs)
+        else:
+            for run in self._pool.run(map(self._runs.start_at, designs)):
+                self.result.model_evals += not run.failure  # as OpenMDAO counts runs here
+                yield run
+
+    def _conclude(self, design: Array, run: ModelRun | None) -> Candidate:
+        """Have the model run, here or from a run elsewhere, and read it; one driver case."""
+        self._runs.set_design(design)
         with RecordingDebugging(self._get_name(), self.iter_count, self):
             try:
-                self._run_solve_nonlinear()
-                candidate = self._read_responses(design)
+                if run is None:
+                    self._run_solve_nonlinear()
+                else:
+                    self._runs.put_outputs(run.outputs)
+                    if run.failure:
+                        raise om.AnalysisError(run.failure)
+                candidate = self._runs.read(design)
             except om.AnalysisError as error:
-                reason = str(error) or "AnalysisError without a message"
-                candidate = Candidate.failed(design, 1 + self._n_constraints, reason)
+                candidate = self._runs.failed(design, error)
             self._case_failure = candidate.failure
         self.iter_count += 1
         return candidate
 
-    def _read_responses(self, design: Array) -> Candidate:
-        """Take objective and violations from the model that has just run."""
-        objectives = self.get_objective_values(driver_scaling=False)
-        energies = self.get_objective_values()
-        constraints = self.get_constraint_values(driver_scaling=False)
-        for name, value in {**objectives, **constraints}.items():
-            if not np.isfinite(value).all():
-                raise om.AnalysisError(f"{name} is not finite: {value}")
-        violations = [
-            constraint_violations(constraints[name], meta, self.options["equality_tolerance"])
-            for name, meta in self._cons.items()
-        ]
-        # The leading zero is the constraint that the analysis succeeds.
-        violation = np.concatenate([[0.0], *violations])
-        (objective,), (energy,) = (v for values in (objectives, energies) for v in values.values())
-        return Candidate(design, float(objective), float(energy), violation)
-
     def _improved(self, candidate: Candidate, evaluations: int) -> None:
         if candidate.feasible and self.options["best_file"] is not None:
-            # Joined to an absolute path the folder drops out.
-            path = self._problem().get_outputs_dir() / self.options["best_file"]
-            path.parent.mkdir(parents=True, exist_ok=True)
-            write_best_design(path, self, evaluations)
+            write_best_design(self._output_file("best_file"), self, evaluations)
 
     def _get_recorder_metadata(self, case_name: str) -> dict[str, Any]:
         metadata = super()._get_recorder_metadata(case_name)

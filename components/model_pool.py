@@ -1,0 +1,217 @@
+"""Runs of a model in other processes, on any executor of `concurrent.futures`."""
+
+from __future__ import annotations
+
+import contextlib
+import dataclasses
+import pickle
+import tempfile
+import threading
+import traceback
+from collections.abc import Callable, Iterable, Iterator
+from concurrent.futures import Executor
+from functools import partial
+from typing import Any
+
+import openmdao.api as om
+from openmdao.core.constants import _SetupStatus
+from openmdao.core.driver import Driver
+
+from propmdao.components.candidate import Array
+from propmdao.worker_processes import results_in_order, start_workers
+
+# An executor may run tasks on threads; a Problem serves one at a time.
+_WORKER = threading.local()
+
+
+@dataclasses.dataclass(frozen=True)
+class ModelRun:
+    """What a run of a model has left.
+
+    Attributes
+    ----------
+    outputs : (n,) array
+        All outputs of the model, as its outputs vector holds them.
+    failure : str
+        Message of the `om.AnalysisError` that ended the run, empty when there was none.
+    error : Exception or None
+        What else was raised.
+    """
+
+    outputs: Array
+    failure: str = ""
+    error: Exception | None = None
+
+
+class ModelPool:
+    """Models on the workers of an executor, each run from the output values it is sent.
+
+    Values travel, structure does not: every worker builds its Problem once, and what the outputs
+    vector holds before a run, independent variables and initial states alike, comes from the
+    Problem that asks. So a run gives what it would have given there.
+
+    Parameters
+    ----------
+    factory : callable
+        Returns, without arguments, a Problem that has been set up, with the same model as `model`.
+        It has to pickle, which functions of a module do and nested ones and lambdas do not. It
+        should not attach recorders, whose file every worker would open anew.
+    model : om.Group
+        Model of the Problem that asks, after its final setup.
+    executor : concurrent.futures.Executor
+        Where the runs take place.
+
+    Raises
+    ------
+    ValueError
+        When the factory does not pickle.
+    """
+
+    def __init__(
+        self, factory: Callable[[], om.Problem], model: om.Group, executor: Executor
+    ) -> None:
+        try:
+            self._task = pickle.dumps((factory, _layout(model)))
+        except Exception as error:  # pickle raises whatever an object's methods raise
+            raise ValueError(
+                f"problem_factory {factory!r} does not pickle ({error}); use a function that stands"
+                " at the top of a module, or functools.partial of one"
+            ) from error
+        self._executor = executor
+
+    def run(self, starts: Iterable[Array]) -> Iterator[ModelRun]:
+        """Run the model from each of several outputs vectors.
+
+        Parameters
+        ----------
+        starts : iterable of (n,) arrays
+            Values of all outputs before each run.
+
+        Yields
+        ------
+        ModelRun
+            In the order of `starts`.
+
+        Raises
+        ------
+        WorkerLostError
+            When a worker dies.
+        Exception
+            What a model or the factory raises, other than `om.AnalysisError`.
+        """
+        for run in results_in_order(self._executor, partial(_run_model, self._task), starts):
+            if run.error is not None:
+                raise run.error
+            yield run
+
+
+@contextlib.contextmanager
+def model_pool(
+    model: om.Group,
+    n_workers: int,
+    executor: Executor | None,
+    problem_factory: Callable[[], om.Problem] | None,
+) -> Iterator[ModelPool | None]:
+    """Models on workers, as the options of a driver ask for them.
+
+    Parameters
+    ----------
+    model : om.Group
+        Model of the driver's Problem.
+    n_workers : int
+        Processes that are started, and ended when the context is left; with 1 there are none.
+    executor : concurrent.futures.Executor or None
+        Used instead of processes of one's own, and left open.
+    problem_factory : callable or None
+        Builds the Problem of each worker.
+
+    Yields
+    ------
+    ModelPool or None
+        None when the model is to be run where it is.
+
+    Raises
+    ------
+    ValueError
+        When there is no factory, or it does not pickle, or both kinds of workers are asked for.
+    """
+    if n_workers == 1 and executor is None:
+        yield None
+        return
+    if n_workers > 1 and executor is not None:
+        raise ValueError(f"give n_workers or an executor, not both; n_workers is {n_workers}")
+    if problem_factory is None:
+        raise ValueError(
+            "workers build their own Problem: give problem_factory, a function of a module that"
+            " returns the Problem, set up"
+        )
+    if executor is not None:
+        yield ModelPool(problem_factory, model, executor)
+        return
+    with contextlib.ExitStack() as stack:
+        # A Problem that is set up clears the reports of its name: they would be this process's.
+        folder = stack.enter_context(tempfile.TemporaryDirectory())
+        workers = stack.enter_context(start_workers(n_workers, {"OPENMDAO_WORKDIR": folder}))
+        yield ModelPool(problem_factory, model, workers)
+
+
+def _layout(model: om.Group) -> dict[str, int]:
+    """Sizes of all outputs in the order of the outputs vector."""
+    return {name: meta["size"] for name, meta in model._var_allprocs_abs2meta["output"].items()}
+
+
+def _run_model(task: bytes, start: Array) -> ModelRun:
+    """Run the model of a task in this worker."""
+    try:
+        if getattr(_WORKER, "task", None) != task:
+            _WORKER.problem = _build(task)
+            _WORKER.task = task
+        model, failure = _WORKER.problem.model, ""
+        outputs = model.get_nonlinear_vectors()[1]
+        outputs.set_val(start)
+        try:
+            model.run_solve_nonlinear()
+        except om.AnalysisError as error:
+            failure = str(error) or "AnalysisError without a message"
+        return ModelRun(outputs.asarray(copy=True), failure)
+    except Exception as error:
+        return ModelRun(start, error=_that_travels(error))
+
+
+def _build(task: bytes) -> om.Problem:
+    factory, expected = pickle.loads(task)
+    problem = factory()
+    if not isinstance(problem, om.Problem) or not _is_set_up(problem):
+        raise ValueError(
+            f"problem_factory must return a Problem that has been set up; it returns {problem!r}"
+        )
+    # Its driver is never run, but its recorder would open the file of the driver that is.
+    problem.driver = Driver()
+    problem.final_setup()
+    built = _layout(problem.model)
+    if list(built.items()) != list(expected.items()):
+        different = sorted(dict(built.items() ^ expected.items())) or ["the order of outputs"]
+        raise ValueError(
+            f"problem_factory builds another model than the driver's Problem has: they differ in"
+            f" {', '.join(different[:3])}"
+        )
+    return problem
+
+
+def _is_set_up(problem: om.Problem) -> bool:
+    metadata = problem._metadata
+    return metadata is not None and metadata["setup_status"] >= _SetupStatus.POST_SETUP
+
+
+def _that_travels(error: Exception) -> Exception:
+    """Return the error with the worker's traceback, or what it says where it does not pickle."""
+    note = "In a worker:\n" + "".join(traceback.format_exception(error))
+    error.__cause__ = error.__context__ = None
+    try:
+        error.add_note(note)
+        copy: Any = pickle.loads(pickle.dumps(error))
+        return copy
+    except Exception:
+        plain = RuntimeError(f"{type(error).__name__}: {error}")
+        plain.add_note(note)
+        return plain
