@@ -71,7 +71,7 @@ def absorb(mean_square: ArrayLike, frequency_hz: ArrayLike, distance: ArrayLike,
     mean_square : (..., n) array
         Mean-square pressures [Pa^2] without absorption.
     frequency_hz : (n,) array
-        Their frequencies, mid-band ones of third octaves, as they are heard [Hz].
+        Their frequencies, mid-band ones of third octaves, as fixed observers hear them [Hz].
     distance : (...,) array
         Way of the sound from emission to reception [m].
     air : Air
@@ -97,7 +97,8 @@ def absorb_tones(tones: Tones, distance: ArrayLike, air: Air) -> Tones:
     Parameters
     ----------
     tones : Tones
-        At (n_observers,) without absorption.
+        At (n_observers,) without absorption; in flight, for observers that fly along, the air
+        hears another frequency than they do, by Doppler's factor, which is left out here.
     distance : (n_observers,) array
         Way of the sound from emission to reception [m].
     air : Air

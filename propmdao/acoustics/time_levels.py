@@ -15,6 +15,8 @@ from propmdao.acoustics.levels import a_weighting, energy_sum_db, level_db
 FAST = 0.125
 SLOW = 1.0
 
+_OVERLAP = 0.1  # of the width of a band, on either side of an edge
+
 Floats = NDArray[np.float64]
 
 
@@ -103,6 +105,9 @@ def third_octave_history(
 ) -> tuple[Floats, Floats]:
     """Third octaves of each of the slices of a record.
 
+    Bands pass into each other over a tenth of their width, as those of real filters do: sharp
+    edges would ring for longer than a flying rotor's tone takes to cross them.
+
     Parameters
     ----------
     pressure : (..., n_times) array_like
@@ -119,7 +124,7 @@ def third_octave_history(
     time : (n_slices,) array
         Middle of each slice, from the beginning of the record [s].
     mean_square : (..., n_slices, n_bands) array
-        Mean-square pressures [Pa^2]; their mean over the slices is that of the whole record.
+        Mean-square pressures [Pa^2]; over all slices and neighbouring bands, that of the record.
 
     Raises
     ------
@@ -132,16 +137,20 @@ def third_octave_history(
     resolution = sample_rate / (n * each)
     bands = []
     for center in np.asarray(center_hz, float):
-        low, high = (int(np.ceil(center * 10**k / resolution)) for k in (-0.05, 0.05))
+        edge = 0.5 + _OVERLAP
+        low, high = (int(np.ceil(center * 10 ** (k / 10) / resolution)) for k in (-edge, edge))
         if high > spectrum.shape[-1]:
             raise ValueError(
                 f"sample rate of {sample_rate:g} Hz is too low for the band around {center:.4g} Hz"
             )
+        away = np.abs(10 * np.log10(np.arange(low, high) * resolution / center)) - 0.5
+        # The squares of neighbours add up to one.
+        part = np.cos(np.pi / 4 * (1 + np.maximum(away / _OVERLAP, -1))) * spectrum[..., low:high]
         # The band alone is an envelope that changes no faster than the band is wide, so that few
         # samples of it say all; four times as many as it needs follow its square within a slice.
         samples = max(8, -(-4 * (high - low) // n))
         midway = np.exp(1j * np.pi * np.arange(high - low) / (n * samples))
-        envelope = np.fft.ifft(spectrum[..., low:high] * midway, n * samples) * (n * samples)
+        envelope = np.fft.ifft(part * midway, n * samples) * (n * samples)
         energy = 2 * np.abs(envelope) ** 2
         bands.append(energy.reshape(*p.shape[:-1], n, samples).mean(axis=-1))
     return _middles(n, each, sample_rate), np.stack(bands, axis=-1)
