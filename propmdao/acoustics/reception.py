@@ -159,7 +159,7 @@ def require_outside(
         if not distance > radius:
             raise ValueError(
                 f"observers must be outside of the sources' region; observer {number} comes to "
-                f"{distance:.3g} m from the centre of {name}, which reaches to {radius:.3g} m"
+                f"{distance:.3g} m from the centre of {name}; the region's radius is {radius:.3g} m"
             )
 
 

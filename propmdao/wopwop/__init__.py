@@ -7,6 +7,7 @@ from propmdao.wopwop.loading_file import LoadingFile, read_loading, write_loadin
 from propmdao.wopwop.namelists import read_namelists, write_namelists
 from propmdao.wopwop.pressure_file import PressureHistories, read_pressure
 from propmdao.wopwop.run import CaseResult, run_case
+from propmdao.wopwop.write_case import write_case
 from propmdao.wopwop.zones import Zone
 
 __all__ = [
@@ -22,6 +23,7 @@ __all__ = [
     "read_namelists",
     "read_pressure",
     "run_case",
+    "write_case",
     "write_geometry",
     "write_loading",
     "write_namelists",

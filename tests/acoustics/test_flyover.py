@@ -122,7 +122,7 @@ class TestRefused:
 
     def test_an_observer_in_the_way(self, rotor):
         self.refused(
-            "observer 1 comes to 0.0.* m from the centre of the rotor, which reaches to 0.1",
+            "observer 1 comes to 0.0.* m from the centre of the rotor; the region's radius is 0.1",
             [rotor],
             place=(0.05, 0, 10.0),
             t=np.arange(441) / 441,

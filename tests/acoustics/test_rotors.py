@@ -199,7 +199,9 @@ def test_loads_that_end_too_early_are_refused(rotor):
 
 
 def test_an_observer_in_the_disk_is_refused_with_its_distance(rotor):
-    message = r"observer 2 comes to 0.03 m from the centre of the rotor, which reaches to 0.1\d+ m"
+    message = (
+        r"observer 2 comes to 0.03 m from the centre of the rotor; the region's radius is 0.1\d+ m"
+    )
     hub = np.array([0.1, -0.2, 0.05])
     listeners = flying((0, 0, 0), [[2.0, 0, 0], hub + [0, 0.03, 0]])
     with pytest.raises(ValueError, match=message):

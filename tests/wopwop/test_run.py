@@ -154,7 +154,7 @@ def test_a_case_that_is_wholly_understood_warns_of_nothing(make_case):
         ),
         (
             {"ObserverIn": {"xMin": 0.2, "zMin": 0.0}},
-            "observer 1 comes to 0.2 m from the centre of the sources, which reaches to 0.5 m",
+            "observer 1 comes to 0.2 m from the centre of the sources; the region's radius is 0.5",
         ),
     ],
 )

@@ -1,0 +1,78 @@
+"""A propeller of ours, with its loads at one operating point, as a case for PSU-WOPWOP."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import jax.numpy as jnp
+import numpy as np
+from numpy.typing import ArrayLike
+
+from propmdao.acoustics.formulation1a import require_subsonic_tip
+from propmdao.acoustics.motion import translation
+from propmdao.acoustics.reception import Observers
+from propmdao.acoustics.rotors import Rotor, equally_spaced
+from propmdao.fidelity import Fidelity
+from propmdao.geometry.blade import Blade, span_interpolation
+from propmdao.geometry.surface import surface_nodes, surface_span
+from propmdao.propeller import Propeller
+from propmdao.records import PointLoads
+from propmdao.wopwop.write_case import write_case
+
+
+def write_propeller_case(
+    folder: str | Path,
+    propeller: Propeller,
+    loads: PointLoads,
+    *,
+    rpm: float,
+    speed: float,
+    density: float,
+    sound_speed: float,
+    observers: ArrayLike,
+    fidelity: Fidelity = Fidelity(),  # noqa: B008 - frozen
+    n_times: int = 1024,
+) -> None:
+    """Write a PSU-WOPWOP case of a propeller in hover or axial flight, observers flying along.
+
+    Parameters
+    ----------
+    folder : str or Path
+        Where to: cases.nam, case.nam and the geometry and loading files.
+    propeller : Propeller
+        The described blade, as it was analysed.
+    loads : PointLoads
+        Of the analysis, ``steady.point_loads``.
+    rpm, speed, density, sound_speed : float
+        Operating point [rev/min], [m/s], [kg/m^3], [m/s].
+    observers : (n_observers, 3) array_like
+        Positions from the rotor centre [m], see `arc`.
+    fidelity : Fidelity
+        Numbers of panels of the surface.
+    n_times : int
+        Observer times over the one turn that is written.
+
+    Raises
+    ------
+    ValueError
+        If the propeller does not turn, its tip is not slower than sound, or the folder cannot be
+        written.
+    """
+    if not (np.isfinite(rpm) and rpm > 0):
+        raise ValueError(f"rpm must be positive for a PSU-WOPWOP case; it is {rpm:g}")
+    omega = rpm * np.pi / 30
+    require_subsonic_tip(0.5 * propeller.diameter, omega, speed, sound_speed)
+    stations = propeller.r_over_R
+    span = span_interpolation(stations, surface_span(stations[0], fidelity.n_surface_span))
+    nodes = surface_nodes(Blade.from_propeller(propeller), span, fidelity.n_contour)
+    velocity = np.array([0.0, 0.0, speed])
+    write_case(
+        folder,
+        [Rotor(equally_spaced(propeller.n_blades), omega, loads=loads)],
+        [nodes],
+        Observers(jnp.asarray(observers, float).reshape(-1, 3), jnp.asarray(velocity)),
+        np.arange(n_times) * 2 * np.pi / (omega * n_times),
+        density,
+        sound_speed,
+        (translation(velocity=velocity),),
+    )
