@@ -6,7 +6,7 @@ import multiprocessing
 import os
 import signal
 import threading
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Generator, Iterable, Mapping
 from concurrent.futures import Executor, Future, ProcessPoolExecutor
 from typing import TypeVar
 
@@ -62,7 +62,7 @@ def use_one_thread() -> None:
 
 def results_in_order(
     executor: Executor, function: Callable[[Argument], Result], arguments: Iterable[Argument]
-) -> Iterator[Result]:
+) -> Generator[Result, None, None]:
     """Results of a function of one argument, each as soon as it and those before it are there.
 
     Whoever stops reading, by an error or ``close()``, cancels what has not begun.

@@ -1,0 +1,180 @@
+"""A table of points and their results, as a CSV file that grows row by row."""
+
+from __future__ import annotations
+
+import csv
+import importlib
+import io
+import os
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+Value = float | int | str | bool
+STATUS, REASON = "status", "reason"
+
+
+class ResultTable:
+    """Rows of points, whose results are added to a file as they come.
+
+    The file has a header, the columns of the point, those of its results, ``status`` ("ok" or
+    "failed") and ``reason`` (of a failure, on one line). An existing file is gone on with, and what
+    a killed process has left of a row is cut off.
+
+    Parameters
+    ----------
+    path : path
+        CSV file; it and its folder are made where there is none.
+    point_columns, result_columns : sequence of str
+        Names of what distinguishes points, and of what is found for them.
+
+    Raises
+    ------
+    ValueError
+        When the file has other columns, or rows that do not fit them.
+    """
+
+    def __init__(
+        self,
+        path: str | os.PathLike[str],
+        point_columns: Sequence[str],
+        result_columns: Sequence[str],
+    ) -> None:
+        self.path = Path(path)
+        self._point_columns = list(point_columns)
+        self._columns = [*point_columns, *result_columns, STATUS, REASON]
+        self._rows: dict[tuple[str, ...], list[str]] = {}
+        self.path.parent.mkdir(parents=True, exist_ok=True)
+        if self.path.exists() and self.path.stat().st_size > 0:
+            self._read()
+        else:
+            self.path.write_text(_line(self._columns), encoding="utf-8")
+
+    def __contains__(self, point: Mapping[str, Value]) -> bool:
+        """Whether there is a row of a point."""
+        return self._key(point) in self._rows
+
+    def __len__(self) -> int:
+        """Return the number of rows."""
+        return len(self._rows)
+
+    def add(
+        self, point: Mapping[str, Value], results: Mapping[str, Value], reason: str = ""
+    ) -> None:
+        """Add the row of a point.
+
+        Parameters
+        ----------
+        point : mapping
+            Value of every point column.
+        results : mapping
+            Values of the result columns; one that is missing leaves its cell empty.
+        reason : str
+            Why the point has failed, empty when it has not.
+        """
+        row = {**point, **results}
+        row |= {STATUS: "failed" if reason else "ok", REASON: " ".join(reason.split())}
+        cells = [_text(row[name]) if name in row else "" for name in self._columns]
+        # One unbuffered write: the row is in the hands of the system when this returns.
+        with self.path.open("ab", buffering=0) as file:
+            file.write(_line(cells).encode())
+        self._rows[self._key(point)] = cells
+
+    def failures(self, points: Sequence[Mapping[str, Value]]) -> list[str]:
+        """Reasons of those of the points that have failed."""
+        rows = [self._rows[self._key(point)] for point in points]
+        return [reason for *_, status, reason in rows if status == "failed"]
+
+    def write_parquet(self, path: str | os.PathLike[str]) -> None:
+        """Write the table as a Parquet file too, numbers as 64-bit floats.
+
+        Parameters
+        ----------
+        path : path
+            File to write or replace.
+
+        Raises
+        ------
+        ModuleNotFoundError
+            Without pyarrow, which is an extra.
+        """
+        pyarrow = require_pyarrow()
+        columns = {}
+        for name, *cells in zip(self._columns, *self._rows.values(), strict=True):
+            columns[name] = cells if name in (STATUS, REASON) else _typed(cells)
+        pyarrow.parquet.write_table(pyarrow.table(columns), path)
+
+    def _key(self, point: Mapping[str, Value]) -> tuple[str, ...]:
+        return tuple(_text(point[name]) for name in self._point_columns)
+
+    def _read(self) -> None:
+        content = self.path.read_bytes()
+        whole = content[: content.rfind(b"\n") + 1]
+        try:
+            header, *rows = csv.reader(io.StringIO(whole.decode()), strict=True)
+        except (ValueError, csv.Error):
+            header, rows = [], []
+        if header != self._columns:
+            raise ValueError(
+                f"'{self.path}' holds something else than this sweep, its columns differ:"
+                f" {_differences(header, self._columns)}; name another file, or delete it to start"
+                " anew"
+            )
+        for number, row in enumerate(rows, start=2):
+            if len(row) != len(self._columns):
+                raise ValueError(
+                    f"'{self.path}' has {len(row)} cells in row {number} and"
+                    f" {len(self._columns)} columns; mend or delete that row to go on"
+                )
+            self._rows[tuple(row[: len(self._point_columns)])] = row
+        if len(whole) < len(content):
+            os.truncate(self.path, len(whole))
+
+
+def require_pyarrow() -> Any:
+    """Import pyarrow, or say how to get it.
+
+    Returns
+    -------
+    module
+        pyarrow, with its Parquet part.
+
+    Raises
+    ------
+    ModuleNotFoundError
+        When it is not installed.
+    """
+    try:
+        importlib.import_module("pyarrow.parquet")
+    except ModuleNotFoundError as error:
+        raise ModuleNotFoundError(
+            "Parquet files need pyarrow: pip install 'propmdao[parquet]'", name=error.name
+        ) from None
+    return importlib.import_module("pyarrow")
+
+
+def _differences(there: list[str], here: list[str]) -> str:
+    only = [f"{name} only there" for name in there if name not in here][:3]
+    only += [f"{name} only here" for name in here if name not in there][:3]
+    return ", ".join(only) or "their order"
+
+
+def _text(value: Value) -> str:
+    """Text from which a number is read back with every digit."""
+    return value if isinstance(value, str) else repr(value)
+
+
+def _typed(cells: list[str]) -> list[float | None] | list[bool | None] | list[str]:
+    """Numbers, truth values or texts, whichever a whole column is; None for empty cells."""
+    if set(cells) <= {"True", "False", ""}:
+        return [cell == "True" if cell else None for cell in cells]
+    try:
+        return [float(cell) if cell else None for cell in cells]
+    except ValueError:
+        return cells
+
+
+def _line(cells: Sequence[str]) -> str:
+    line = io.StringIO()
+    csv.writer(line, lineterminator="\n").writerow(cells)
+    return line.getvalue()
