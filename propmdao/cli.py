@@ -1,4 +1,4 @@
-"""Command line: ``propmdao list``, ``propmdao analyze`` and ``propmdao wopwop``.
+"""Command line: ``propmdao list``, ``analyze``, ``sweep`` and ``wopwop``.
 
 Written with argparse because ``--arc RADIUS ELEVATION...`` takes any number of values, negative
 ones among them, which parsers that give every option a fixed number of values cannot read.
@@ -16,6 +16,7 @@ from collections.abc import Sequence
 from typing import Any, NoReturn
 
 import propmdao
+from propmdao.sweep_command import add_sweep
 from propmdao.wopwop_command import add_wopwop
 
 MAX_RPM_VALUES = 1000
@@ -166,6 +167,7 @@ def build_parser() -> argparse.ArgumentParser:
         " negative below it (wake side); may be repeated for other radii",
     )
     analysis.add_argument("--json", action="store_true", help="print JSON instead of tables")
+    add_sweep(commands, _number, _rpm, _arc)
     add_wopwop(commands)
     return parser
 
