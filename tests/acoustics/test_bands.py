@@ -15,7 +15,7 @@ from propmdao.acoustics.bands import (
 )
 from propmdao.acoustics.broadband import third_octave_centers
 from propmdao.acoustics.levels import energy_sum_db, level_db, level_dba, mean_square
-from propmdao.acoustics.narrowband import narrowband, third_octaves_of_record
+from propmdao.acoustics.spectrum import narrowband, third_octaves_of_record
 
 RNG = np.random.default_rng(2)
 FREQUENCY_HZ = 140.0 * np.arange(1, 11)

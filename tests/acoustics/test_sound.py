@@ -8,7 +8,6 @@ from propmdao.acoustics import oaspl_db, pressure_history
 from propmdao.acoustics.bands import third_octaves_of_spectrum
 from propmdao.acoustics.broadband import third_octave_centers
 from propmdao.acoustics.levels import level_db
-from propmdao.acoustics.narrowband import narrowband, third_octaves_of_record
 from propmdao.acoustics.sound import (
     SAMPLE_RATE,
     broadband_record,
@@ -17,6 +16,7 @@ from propmdao.acoustics.sound import (
     tone_record,
     write_wav,
 )
+from propmdao.acoustics.spectrum import narrowband, third_octaves_of_record
 
 RNG = np.random.default_rng(8)
 FREQUENCY_HZ = 136.7 * np.arange(1, 11)
