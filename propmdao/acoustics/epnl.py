@@ -11,7 +11,6 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from scipy.signal import lfilter
 
 from propmdao.acoustics.perceived_noise import perceived_noise_level, tone_correction
 
@@ -63,6 +62,8 @@ def slow_response(level_db: ArrayLike) -> Floats:
     ----------
     14 CFR Part 36, A36.3.7.5 and A36.3.7.6.
     """
+    from scipy.signal import lfilter  # here: loading it takes as long as all the rest
+
     energy = 10 ** (0.1 * np.asarray(level_db, float))
     return np.asarray(10 * np.log10(lfilter([0.39347], [1, -0.60653], energy, axis=0)))
 

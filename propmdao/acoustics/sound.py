@@ -113,9 +113,11 @@ def looped_record(
     Raises
     ------
     ValueError
-        As in `tone_record`.
+        If the period has fewer than 3 samples, or as in `tone_record`.
     """
     p = np.asarray(pressure, float)
+    if p.shape[-1] < 3:
+        raise ValueError(f"a period needs at least 3 samples to be repeated; got {p.shape[-1]}")
     amplitude = np.conj(np.fft.rfft(p)) / p.shape[-1]
     harmonics = np.arange(1, (p.shape[-1] + 1) // 2)
     return tone_record(harmonics / period, amplitude[..., harmonics], duration, sample_rate)
@@ -151,10 +153,15 @@ def broadband_record(
     Raises
     ------
     ValueError
-        If the record is too short to resolve the lowest band, or as in `bands_in_bins`.
+        If all bands reach above half the sample rate, the record is too short to resolve the
+        lowest band, or as in `bands_in_bins`.
     """
     center, wanted = np.asarray(center_hz, float), np.asarray(mean_square, float)
     fits = center * 10**0.05 < sample_rate / 2
+    if not np.any(fits):
+        raise ValueError(
+            f"sample rate of {sample_rate} Hz is too low for the band around {center[0]:.4g} Hz"
+        )
     bins = np.arange(1, (n_times + 1) // 2) * sample_rate / n_times
     energy = bands_in_bins(center[fits], wanted[..., fits], bins)
     phase = np.random.default_rng(seed).uniform(0, 2 * np.pi, energy.shape)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from scipy.signal import welch
 
 from propmdao.acoustics.bands import third_octaves_of_spectrum
 
@@ -39,6 +38,8 @@ def narrowband(
     ValueError
         If the record is shorter than one segment, 1 / bin width.
     """
+    from scipy.signal import welch  # here: loading it takes as long as all the rest
+
     p = np.asarray(pressure, float)
     n = round(sample_rate / bin_width_hz) if bin_width_hz > 0 else 0
     if not 2 <= n <= p.shape[-1]:

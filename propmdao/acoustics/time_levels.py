@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from scipy.signal import lfilter
 
 from propmdao.acoustics.levels import a_weighting, energy_sum_db, level_db
 
@@ -63,6 +62,8 @@ def time_weighted_level_db(
     ----------
     IEC 61672-1:2013, equation 1.
     """
+    from scipy.signal import lfilter  # here: loading it takes as long as all the rest
+
     keep = np.exp(-1 / (sample_rate * time_constant))
     average = lfilter([1 - keep], [1, -keep], np.asarray(pressure, float) ** 2, axis=-1)
     return np.asarray(level_db(average))

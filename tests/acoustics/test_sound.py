@@ -146,6 +146,11 @@ def test_full_scale_is_the_peak_rounded_up(peak, scale):
         (lambda path: common_full_scale([0.0]), "nothing to be heard"),
         (lambda path: tone_record([0.0, 0.0], [1, 1], 1.0), "frequency must be positive"),
         (lambda path: tone_record([100.0], [1], -1.0), r"duration .* positive \[s\]; got -1"),
+        (lambda path: looped_record([1.0, 2.0], 0.01, 1.0), "at least 3 samples .* got 2"),
+        (
+            lambda path: broadband_record([1000.0], [1.0], 1000, 2000),
+            "sample rate of 2000 Hz is too low for the band around 1000 Hz",
+        ),
         (
             lambda path: broadband_record(BANDS, MEAN_SQUARE, 1000),
             "bins of 48 Hz are wider than the band around 100 Hz",
