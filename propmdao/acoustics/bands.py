@@ -158,13 +158,14 @@ def _spread(center: NDArray, wanted: NDArray, bins: NDArray, edges: NDArray) -> 
     owner = np.searchsorted(center * _HALF_BAND, bins, side="right")
     within = (bins >= center[0] / _HALF_BAND) & (owner < center.size)
     owner = np.minimum(owner, center.size - 1)
-    log_f = np.log(np.clip(bins, center[0], center[-1]))  # level in the outer half bands
+    log_f = np.log(np.clip(bins, center[0] / _HALF_BAND, center[-1] * _HALF_BAND))
+    nodes = np.log(np.r_[center[0] / _HALF_BAND, center, center[-1] * _HALF_BAND])
     # A curve need not reach below 100 dB under the loudest band: the gain below does the rest.
     floor = np.log(1e-10 * wanted.max())
     target = np.maximum(np.log(wanted, out=np.full_like(wanted, floor), where=wanted > 0), floor)
     log_density = target - np.log(center)
     for _ in range(40):
-        curve = PchipInterpolator(np.log(center), log_density)
+        curve = PchipInterpolator(nodes, np.pad(log_density, 1, "edge"))
         energy = np.where(within, np.exp(curve(log_f)), 0.0)
         held = _energy(energy, edges, center)
         excess = np.log(held) - target

@@ -149,6 +149,14 @@ def test_several_observers_and_silence():
     assert not np.any(two[1])
 
 
+def test_one_band_alone_is_flat():
+    bins = 1.0 * np.arange(1, 2000)
+    spectrum = bands_in_bins([1000.0], [5.0], bins)
+    inside = (bins > 892) & (bins < 1122)
+    np.testing.assert_allclose(spectrum[inside], 5.0 / 230.8, rtol=0.01)
+    assert spectrum.sum() == pytest.approx(5.0, rel=0.005)
+
+
 @pytest.mark.parametrize(
     ("call", "message"),
     [
