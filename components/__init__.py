@@ -7,6 +7,7 @@ from propmdao.components.differential_evolution_driver import DifferentialEvolut
 from propmdao.components.geometry_comp import GeometryComp
 from propmdao.components.propeller_group import PropellerGroup
 from propmdao.components.rotation_speed_comp import RotationSpeedComp
+from propmdao.components.sweep_driver import SweepDriver
 
 __all__ = [
     "AcousticsComp",
@@ -16,4 +17,5 @@ __all__ = [
     "GeometryComp",
     "PropellerGroup",
     "RotationSpeedComp",
+    "SweepDriver",
 ]

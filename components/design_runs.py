@@ -73,12 +73,6 @@ class DesignRuns:
         values: Array = self.outputs.asarray(copy=True)
         return values
 
-    def put_outputs(self, values: Array) -> None:
-        """Make the model what it would be after a run that has left these outputs."""
-        self.outputs.set_val(values)
-        for group in self._driver._problem().model.system_iter(include_self=True, typ=om.Group):
-            group._transfer("nonlinear", "fwd")
-
     def responses(self) -> dict[str, Array]:
         """Values of the outputs that the objective and the constraints are taken from."""
         return {name: np.array(self.outputs._abs_get_val(name)) for name in self._sources()}

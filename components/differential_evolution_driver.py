@@ -19,7 +19,7 @@ from propmdao.components.candidate import Array, Candidate
 from propmdao.components.checkpoint import Checkpoint
 from propmdao.components.constrained_search import ConstrainedSearch, Generation, SearchStopped
 from propmdao.components.design_runs import DesignRuns
-from propmdao.components.model_pool import ModelRun, model_pool
+from propmdao.components.model_pool import ModelRun, model_pool, put_outputs
 from propmdao.components.search_options import (
     SAMPLERS,
     declare_file_options,
@@ -267,6 +267,8 @@ class DifferentialEvolutionDriver(Driver):
             yield from [None] * len(designs)
         else:
             for run in self._pool.run(map(self._runs.start_at, designs)):
+                if run.error is not None:
+                    raise run.error
                 self.result.model_evals += not run.failure  # as OpenMDAO counts runs here
                 yield run
 
@@ -278,7 +280,7 @@ class DifferentialEvolutionDriver(Driver):
                 if run is None:
                     self._run_solve_nonlinear()
                 else:
-                    self._runs.put_outputs(run.outputs)
+                    put_outputs(self._problem().model, run.outputs)
                     if run.failure:
                         raise om.AnalysisError(run.failure)
                 candidate = self._runs.read(design)

@@ -36,11 +36,14 @@ class ModelRun:
         Message of the `om.AnalysisError` that ended the run, empty when there was none.
     error : Exception or None
         What else was raised.
+    built : bool
+        False when it was raised by building the model.
     """
 
     outputs: Array
     failure: str = ""
     error: Exception | None = None
+    built: bool = True
 
 
 class ModelPool:
@@ -97,10 +100,10 @@ class ModelPool:
         WorkerLostError
             When a worker dies.
         Exception
-            What a model or the factory raises, other than `om.AnalysisError`.
+            What the factory raises.
         """
         for run in results_in_order(self._executor, partial(_run_model, self._task), starts):
-            if run.error is not None:
+            if run.error is not None and not run.built:
                 raise run.error
             yield run
 
@@ -155,6 +158,21 @@ def model_pool(
         yield ModelPool(problem_factory, model, workers)
 
 
+def put_outputs(model: om.Group, values: Array) -> None:
+    """Make a model what it would be after a run that has left these outputs.
+
+    Parameters
+    ----------
+    model : om.Group
+        The whole model of a Problem.
+    values : (n,) array
+        All outputs, as its outputs vector holds them.
+    """
+    model.get_nonlinear_vectors()[1].set_val(values)
+    for group in model.system_iter(include_self=True, typ=om.Group):
+        group._transfer("nonlinear", "fwd")
+
+
 def _layout(model: om.Group) -> dict[str, int]:
     """Sizes of all outputs in the order of the outputs vector."""
     return {name: meta["size"] for name, meta in model._var_allprocs_abs2meta["output"].items()}
@@ -162,11 +180,13 @@ def _layout(model: om.Group) -> dict[str, int]:
 
 def _run_model(task: bytes, start: Array) -> ModelRun:
     """Run the model of a task in this worker."""
+    built = False
     try:
         if getattr(_WORKER, "task", None) != task:
             _WORKER.problem = _build(task)
             _WORKER.task = task
-        model, failure = _WORKER.problem.model, ""
+        built, failure = True, ""
+        model = _WORKER.problem.model
         outputs = model.get_nonlinear_vectors()[1]
         outputs.set_val(start)
         try:
@@ -175,7 +195,7 @@ def _run_model(task: bytes, start: Array) -> ModelRun:
             failure = str(error) or "AnalysisError without a message"
         return ModelRun(outputs.asarray(copy=True), failure)
     except Exception as error:
-        return ModelRun(start, error=_that_travels(error))
+        return ModelRun(start, error=_that_travels(error), built=built)
 
 
 def _build(task: bytes) -> om.Problem:

@@ -1,4 +1,4 @@
-"""Options of the differential evolution driver."""
+"""Options of drivers: how to search, where the model runs, what is written."""
 
 from __future__ import annotations
 

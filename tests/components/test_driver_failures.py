@@ -237,6 +237,19 @@ def test_no_objective_no_design_variable_too_small_a_population():
         set_up(bounds, pop_size=4)
 
 
+def test_a_constraint_that_is_not_there_is_named():
+    """OpenMDAO's own message, before anything runs."""
+    prob = om.Problem(driver=DifferentialEvolutionDriver(), reports=False)
+    prob.model.add_subsystem("comp", om.ExecComp("f = x"), promotes=["*"])
+    prob.model.add_design_var("x", lower=0.0, upper=1.0)
+    prob.model.add_objective("f")
+    prob.model.add_constraint("torqe", upper=1.0)
+    prob.setup()
+    with pytest.raises(RuntimeError, match="Output not found for response 'torqe'"):
+        prob.run_driver()
+    assert prob.driver.iter_count == 0
+
+
 def test_several_objectives():
     bounds = {"lower": 0.0, "upper": 1.0}
     with pytest.raises(RuntimeError, match="one scalar objective; the model has 2: f, h"):
