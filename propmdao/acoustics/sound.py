@@ -193,7 +193,7 @@ def common_full_scale(*pressures: ArrayLike) -> float:
     if not peak > 0:
         raise ValueError("there is nothing to be heard: all pressures are zero")
     digit = 10 ** (np.floor(np.log10(peak)) - 1)
-    return float(np.ceil(peak / digit * (1 - 1e-12)) * digit)
+    return float(f"{np.ceil(peak / digit * (1 - 1e-12)) * digit:.2g}")
 
 
 def write_wav(
