@@ -86,7 +86,7 @@ def _group(result: CaseResult) -> dict[str, Any]:
     from scipy.signal import find_peaks
 
     from propmdao.acoustics.levels import level_db, level_dba
-    from propmdao.acoustics.narrowband import narrowband
+    from propmdao.acoustics.spectrum import narrowband
 
     pressure = result.pressure
     n = pressure.time.shape[1]
