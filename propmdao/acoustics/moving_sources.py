@@ -53,6 +53,30 @@ def unsteady_loads(position: ArrayLike, force: ArrayLike, force_rate: ArrayLike)
     return UnsteadySources(x, jnp.zeros_like(x), jnp.zeros_like(x), f, rate)
 
 
+def compact_sections(position: ArrayLike, volume: ArrayLike) -> Panels:
+    """Panels that displace air at points: a blade of which only section areas are known.
+
+    Parameters
+    ----------
+    position : (n, 3) array_like
+        Of the elements, in the blade's frame [m].
+    volume : (n,) array_like
+        Section area times length of each element [m^3].
+
+    Returns
+    -------
+    Panels
+        Around each point six sides of a cube, a millionth of the blade in size and with areas that
+        give it the volume. Good for thickness noise of wavelengths above the chord.
+    """
+    x = np.asarray(position, float).reshape(-1, 3)
+    size = 1e-6 * float(np.abs(x).max())
+    sides = np.vstack([np.eye(3), -np.eye(3)])
+    center = x[:, None] + 0.5 * size * sides
+    area = np.asarray(volume, float).reshape(-1, 1, 1) / size * sides
+    return Panels(jnp.asarray(center.reshape(-1, 3)), jnp.asarray(area.reshape(-1, 3)))
+
+
 @record
 class PeriodicLoads:
     """Forces of a blade that repeat every turn.
