@@ -21,7 +21,7 @@ from numpy.typing import ArrayLike
 
 from propmdao.acoustics.motion import Motion, Poses, poses
 from propmdao.acoustics.moving_sources import Sources, UnsteadySources, frame_sources
-from propmdao.acoustics.reception import Observers, hear
+from propmdao.acoustics.reception import Observers, hear, observer_clock
 from propmdao.geometry.surface import Panels
 from propmdao.records import PointLoads, Scalar
 
@@ -124,14 +124,9 @@ def _history(
     times: ArrayLike,
     sound_speed: float,
 ) -> Array:
-    tau, clock = np.asarray(emission_times, float), np.asarray(times, float)
+    tau, (clock, step) = np.asarray(emission_times, float), observer_clock(times)
     if tau.ndim != 1 or tau.size < 4 or not np.all(np.diff(tau) > 0):
         raise ValueError(f"source times must be 4 or more that increase; got {tau.size}")
-    if clock.ndim != 1 or clock.size < 2 or not clock[1] > clock[0]:
-        raise ValueError(f"observer times must be 2 or more that increase; got {clock.size}")
-    step = (clock[-1] - clock[0]) / (clock.size - 1)
-    if np.ptp(np.diff(clock)) > 1e-6 * step + 8 * np.spacing(np.abs(clock).max()):
-        raise ValueError(f"observer times must be evenly spaced; the steps differ from {step:g} s")
     lengths = {a.shape[2] for a in (*sources.position, *sources.vector)} - {1, tau.size}
     if lengths:
         raise ValueError(f"sources are given at {lengths.pop()} times; there are {tau.size}")

@@ -22,10 +22,10 @@ from numpy.polynomial import chebyshev
 from numpy.typing import ArrayLike, NDArray
 from scipy.fft import dct
 
-from propmdao.acoustics.motion import Motion, poses
+from propmdao.acoustics.motion import Motion, poses, rotation
 from propmdao.acoustics.periodic import rotor_tones, symmetry
-from propmdao.acoustics.reception import Observers, require_outside
-from propmdao.acoustics.rotors import PressureHistory, Rotor
+from propmdao.acoustics.reception import Observers, observer_clock, require_outside
+from propmdao.acoustics.rotors import PressureHistory, Rotor, require_air
 
 _TOLERANCE = 1e-3  # of the amplitudes: 0.009 dB
 _FLOOR = 1e-3  # below the loudest position, at the same distance, by 60 dB: need not be followed
@@ -82,7 +82,8 @@ def flyover_histories(
     twice as many positions as leave an error of 0.01 dB. Cost: panels x harmonics^2 x positions
     for the amplitudes, harmonics x times for the record.
     """
-    clock = np.asarray(times, float)
+    require_air(density, sound_speed)
+    clock, step = observer_clock(times)
     start = np.asarray(observers.position, float).reshape(-1, 3)
     thickness = np.zeros((len(start), clock.size))
     loading = np.zeros_like(thickness)
@@ -92,7 +93,8 @@ def flyover_histories(
             raise ValueError("flight must be uniform here: neither turning nor accelerating")
         if rotor.rotation_speed == 0:
             continue
-        require_outside(chain, _swept(rotor), observers, clock, rotor.name)
+        turning = rotation((0, 0, 1), rate=rotor.rotation_speed)
+        require_outside((*chain, turning), rotor.points, observers, clock, rotor.name)
         pose = poses(chain, np.zeros(1))
         to_hub, hub, velocity = pose.rotation[0], pose.origin[0], pose.velocity[0]
         passing = (np.asarray(observers.velocity, float) - velocity) @ to_hub
@@ -110,7 +112,7 @@ def flyover_histories(
                 _amplitudes, alone, track, fundamental, n_harmonics, density, sound_speed
             )
             series = _along(amplitudes, track, clock)
-            heard = _record(series, track, clock, fundamental, sound_speed, max_frequency_hz)
+            heard = _record(series, track, clock, step, fundamental, sound_speed, max_frequency_hz)
             thickness[i] += heard[0]
             loading[i] += heard[1]
     return PressureHistory(clock, thickness, loading)
@@ -234,6 +236,7 @@ def _record(
     series: _Series,
     track: _Track,
     times: Floats,
+    step: float,
     fundamental: float,
     sound_speed: float,
     max_frequency_hz: float,
@@ -243,9 +246,9 @@ def _record(
     distance = track.distance(ways)
     emission = times - distance / sound_speed
     rate = float(np.max(np.diff(emission) / np.diff(times)))
-    if max_frequency_hz * rate > 0.5 / (times[1] - times[0]):
+    if max_frequency_hz * rate > 0.5 / step:
         raise ValueError(
-            f"a record of {1 / (times[1] - times[0]):g} samples per second holds no "
+            f"a record of {1 / step:g} samples per second holds no "
             f"{max_frequency_hz * rate:.4g} Hz, what max_frequency_hz is heard as"
         )
     heard = np.empty((2, times.size))
@@ -258,9 +261,3 @@ def _record(
             total = (total + amplitude) * turn[:, None]
         heard[:, part] = 2 * total.real.T / distance[part]
     return heard
-
-
-def _swept(rotor: Rotor) -> Floats:
-    """Points of the blade all around the shaft, for a region with the hub in its middle."""
-    points = rotor.points
-    return np.concatenate([points, points * [-1.0, -1.0, 1.0]])

@@ -27,7 +27,7 @@ from propmdao.acoustics.moving_sources import (
     blade_loads,
     frame_sources,
 )
-from propmdao.acoustics.rotors import Rotor
+from propmdao.acoustics.rotors import Rotor, require_air
 from propmdao.geometry.surface import Panels
 from propmdao.records import PointLoads
 
@@ -71,6 +71,7 @@ def rotor_tones(
     Blade b stands at the azimuth psi_b and is heard as much earlier as it is ahead, so that the sum
     over blades is that of one blade times ``sum_b exp(-1j n psi_b)``.
     """
+    require_air(density, sound_speed)
     if isinstance(rotor.loads, AperiodicLoads):
         raise ValueError(f"loads of {rotor.name} must repeat every turn to have tones")
     pose = poses(rotor.mount, np.zeros(1))

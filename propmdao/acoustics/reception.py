@@ -29,6 +29,35 @@ class Observers:
     velocity: Array
 
 
+def observer_clock(times: ArrayLike) -> tuple[NDArray[np.float64], float]:
+    """Observer times and their step.
+
+    Parameters
+    ----------
+    times : (n_times,) array_like
+        Evenly spaced [s].
+
+    Returns
+    -------
+    times : (n_times,) array
+        The same [s].
+    step : float
+        Between them [s].
+
+    Raises
+    ------
+    ValueError
+        If they are fewer than two, do not increase or are not evenly spaced.
+    """
+    clock = np.asarray(times, float)
+    if clock.ndim != 1 or clock.size < 2 or not clock[1] > clock[0]:
+        raise ValueError(f"observer times must be 2 or more that increase; got {clock.size}")
+    step = float(clock[-1] - clock[0]) / (clock.size - 1)
+    if np.ptp(np.diff(clock)) > 1e-6 * step + 8 * np.spacing(np.abs(clock).max()):
+        raise ValueError(f"observer times must be evenly spaced; the steps differ from {step:g} s")
+    return clock, step
+
+
 def source_times(
     motion: Motion,
     points: ArrayLike,
@@ -118,8 +147,8 @@ def require_outside(
     """Refuse observers that come into the region which the sources sweep.
 
     That region is the sphere around the hub that holds all of the points, the hub being what is
-    nearest to them on the axis of the fastest turning frame; without one it is the sphere around
-    the points.
+    nearest to them on the axis of the fastest turning frame. Where nothing turns it is the box
+    around the points, along the axes of their frame.
 
     Parameters
     ----------
@@ -137,7 +166,7 @@ def require_outside(
     Raises
     ------
     ValueError
-        If an observer is not farther from the hub than the farthest point: it names the distance.
+        If an observer comes into the region: it names the distance from its centre.
     """
     clock = np.asarray(times, float)
     clock = np.linspace(clock[0], clock[-1], min(clock.size, 1000))
@@ -152,14 +181,23 @@ def require_outside(
         axis = motion[turning - 1].axis
         center = axis * (axis @ center)
     radius = float(np.linalg.norm(x - center, axis=1).max())
-    hub = place(poses(motion[:turning], clock), center[None])[0][:, 0]
+    half = np.abs(x - center).max(axis=0)
+    pose = poses(motion[:turning], clock)
+    hub = place(pose, center[None])[0][:, 0]
     velocity = np.asarray(observers.velocity, float)
     for number, start in enumerate(np.asarray(observers.position, float), start=1):
-        distance = np.linalg.norm(start + velocity * clock[:, None] - hub, axis=1).min()
-        if not distance > radius:
+        apart = start + velocity * clock[:, None] - hub
+        distance = np.linalg.norm(apart, axis=1)
+        if any(rates):
+            inside, extent = distance <= radius, f"the region's radius is {radius:.3g} m"
+        else:
+            along_axes = np.abs(np.einsum("ti,tij->tj", apart, pose.rotation))
+            inside = np.all(along_axes <= half, axis=1)
+            extent = "the region is {:.3g} x {:.3g} x {:.3g} m".format(*(2 * half))
+        if inside.any():
             raise ValueError(
                 f"observers must be outside of the sources' region; observer {number} comes to "
-                f"{distance:.3g} m from the centre of {name}; the region's radius is {radius:.3g} m"
+                f"{distance[inside].min():.3g} m from the centre of {name}; {extent}"
             )
 
 

@@ -14,14 +14,19 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from propmdao.acoustics.advanced_time import loading_history, thickness_history
-from propmdao.acoustics.motion import Motion, blade_motions
+from propmdao.acoustics.motion import Motion, blade_motions, rotation
 from propmdao.acoustics.moving_sources import (
     AperiodicLoads,
     BladeLoads,
     PeriodicLoads,
     blade_loads,
 )
-from propmdao.acoustics.reception import Observers, require_outside, source_times
+from propmdao.acoustics.reception import (
+    Observers,
+    observer_clock,
+    require_outside,
+    source_times,
+)
 from propmdao.geometry.surface import Panels
 
 # Unsteady forces times source times kept at once: 0.2 GiB with their derivatives.
@@ -170,8 +175,8 @@ def rotor_histories(
     Raises
     ------
     ValueError
-        If sources reach the speed of sound, an observer comes into a rotor's region, or tables
-        over time do not cover the source times.
+        If sources reach the speed of sound, an observer comes into a rotor's region, tables over
+        time do not cover the source times, times are not evenly spaced or the air is none.
 
     Notes
     -----
@@ -179,12 +184,14 @@ def rotor_histories(
     proportional to panels x observers x times. `flyover_histories` is the faster way for loads
     that repeat every turn in uniform flight.
     """
-    clock = np.asarray(times, float)
+    require_air(density, sound_speed)
+    clock, _ = observer_clock(times)
     thickness = np.zeros((len(observers.position), clock.size))
     loading = np.zeros_like(thickness)
     for rotor in rotors:
-        for motion in blade_motions(rotor.azimuths, rotor.rotation_speed, (*flight, *rotor.mount)):
-            require_outside(motion, rotor.points, observers, clock, rotor.name)
+        turning = rotation((0, 0, 1), rate=rotor.rotation_speed)
+        chain = (*flight, *rotor.mount, turning)
+        require_outside(chain, rotor.points, observers, clock, rotor.name)
     for part in segments(clock.size, max(map(_n_unsteady, rotors), default=0)):
         heard = [
             _segment(rotor, observers, clock[part], density, sound_speed, flight, step)
@@ -193,6 +200,24 @@ def rotor_histories(
         thickness[:, part] = sum(pair[0] for pair in heard)
         loading[:, part] = sum(pair[1] for pair in heard)
     return PressureHistory(clock, thickness, loading)
+
+
+def require_air(density: float, sound_speed: float) -> None:
+    """Refuse air that is none.
+
+    Parameters
+    ----------
+    density, sound_speed : float
+        [kg/m^3], [m/s].
+
+    Raises
+    ------
+    ValueError
+        If one of them is not positive.
+    """
+    for name, value, unit in (("density", density, "kg/m3"), ("sound speed", sound_speed, "m/s")):
+        if not (np.isfinite(value) and value > 0):
+            raise ValueError(f"{name} must be positive; it is {value:g} {unit}")
 
 
 def segments(n_times: int, n_unsteady: int) -> list[slice]:
@@ -229,7 +254,7 @@ def _segment(
     azimuths = np.atleast_1d(np.asarray(rotor.azimuths, float))
     motions = blade_motions(azimuths, rotor.rotation_speed, (*flight, *rotor.mount))
     # A coarse multiple: the Doppler shift changes the number of source times along the record.
-    multiple = max(32, times.size // 8)
+    multiple = max(128, times.size // 4)
     for blade, (azimuth, motion) in enumerate(zip(azimuths, motions, strict=True)):
         tau = source_times(
             motion, rotor.points, observers, times, sound_speed, step, multiple=multiple

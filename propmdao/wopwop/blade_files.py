@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from propmdao.acoustics.moving_sources import AperiodicLoads, BladeLoads, PeriodicLoads
+from propmdao.wopwop.cells import means, vector_areas
 from propmdao.wopwop.geometry_file import GeometryFile
 from propmdao.wopwop.loading_file import LoadingFile
 from propmdao.wopwop.zones import Zone
@@ -109,10 +110,10 @@ def _skin(nodes: Array) -> list[Zone]:
         grids["trailing edge"] = nodes[[-1, 0]]
     grids["root"] = np.stack([upper[:, 0], lower[:, 0]])
     grids["tip"] = np.stack([lower[:, -1], upper[:, -1]])
-    areas = {name: _areas(grid) for name, grid in grids.items()}
+    areas = {name: vector_areas(grid) for name, grid in grids.items()}
     # All grids turn the same way round; which way is outside the sign of the volume says.
     volume = sum(
-        np.sum(_means(grid) * area)
+        np.sum(means(grid) * area)
         for grid, area in zip(grids.values(), areas.values(), strict=True)
     )
     sign = np.sign(volume)
@@ -122,15 +123,6 @@ def _skin(nodes: Array) -> list[Zone]:
 def _zone(name: str, grid: Array, normal: Array) -> Zone:
     values = np.concatenate([np.moveaxis(grid, -1, 0), np.moveaxis(normal, -1, 0)])
     return Zone(name, values[None].astype(np.float32))
-
-
-def _areas(grid: Array) -> Array:
-    a, b, c, d = grid[:-1, :-1], grid[:-1, 1:], grid[1:, 1:], grid[1:, :-1]
-    return np.asarray(0.5 * np.cross(c - a, d - b))
-
-
-def _means(grid: Array) -> Array:
-    return np.asarray(0.25 * (grid[:-1, :-1] + grid[:-1, 1:] + grid[1:, 1:] + grid[1:, :-1]))
 
 
 def _normals(area: Array) -> Array:

@@ -108,7 +108,7 @@ def _container(
             zone_heard = np.zeros_like(heard)
             for part in segments(times.size, n_unsteady):
                 t = times[part]
-                multiple = max(32, t.size // 8)
+                multiple = max(128, t.size // 4)
                 tau = source_times(
                     motion, source_points(zone), observers, t, c, container.step, multiple
                 )

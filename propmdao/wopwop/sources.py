@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from propmdao.acoustics.motion import Motion, poses
 from propmdao.acoustics.moving_sources import UnsteadySources, sample
+from propmdao.wopwop.cells import means, vector_areas
 from propmdao.wopwop.loading_file import LoadingFile
 from propmdao.wopwop.zones import Zone
 
@@ -125,8 +126,7 @@ def _panels(zone: Zone) -> tuple[Array, Array]:
     """Return centres and outward vector areas of the cells, each (n_times, n, 3)."""
     nodes = np.moveaxis(zone.values[:, :3].astype(float), 1, -1)
     if zone.structured:
-        a, b, c, d = _corners(nodes)
-        center, area = _mean_of_corners(nodes), 0.5 * np.cross(c - a, d - b)
+        center, area = means(nodes), vector_areas(nodes)
     else:
         center = _mean_of_faces(zone, nodes)
         area = np.zeros_like(center)
@@ -170,7 +170,7 @@ def _density(geometry: Zone, loading: Zone, at_faces: bool, line: bool) -> Array
 
 
 def _at_cells(zone: Zone, at_nodes: Array) -> Array:
-    return _mean_of_corners(at_nodes) if zone.structured else _mean_of_faces(zone, at_nodes)
+    return means(at_nodes) if zone.structured else _mean_of_faces(zone, at_nodes)
 
 
 def _faces_by_size(zone: Zone) -> Iterator[tuple[NDArray[np.int64], NDArray[np.int64]]]:
@@ -186,16 +186,6 @@ def _mean_of_faces(zone: Zone, at_nodes: Array) -> Array:
     for which, corners in _faces_by_size(zone):
         mean[:, which] = at_nodes[:, corners].mean(axis=2)
     return mean
-
-
-def _corners(grid: Array) -> tuple[Array, Array, Array, Array]:
-    """Return the corners of each cell around it, of (n_times, j_max, i_max, ...)."""
-    return grid[:, :-1, :-1], grid[:, :-1, 1:], grid[:, 1:, 1:], grid[:, 1:, :-1]
-
-
-def _mean_of_corners(grid: Array) -> Array:
-    a, b, c, d = _corners(grid)
-    return np.asarray(0.25 * (a + b + c + d))
 
 
 def _in_time(table: Array, zone: Zone, tau: Array, key_offset: float) -> _Rates:

@@ -134,6 +134,9 @@ class TestRefused:
     def test_nothing_below_the_highest_frequency(self, rotor):
         self.refused("must reach the first tone of the rotor, 318.3", [rotor], top=100.0)
 
+    def test_times_that_are_not_even(self, rotor):
+        self.refused("observer times must be evenly spaced", [rotor], t=np.array([0, 1, 3]) / FS)
+
     def test_supersonic_tips(self, rotor):
         fast = dataclasses.replace(rotor, rotation_speed=2600.0)
         self.refused("tip Mach number must be below 1", [fast])
