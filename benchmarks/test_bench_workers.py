@@ -1,0 +1,57 @@
+"""Throughput of workers: designs a second on two of them over one, and over free threads."""
+
+from __future__ import annotations
+
+import importlib
+import multiprocessing
+import time
+from concurrent.futures import ProcessPoolExecutor
+from pathlib import Path
+
+import pytest
+
+from propmdao.components.model_pool import ModelPool
+from propmdao.worker_processes import start_workers
+
+N_DESIGNS, ROUNDS = 12, 7
+
+
+@pytest.fixture
+def models(monkeypatch):
+    monkeypatch.syspath_prepend(Path(__file__).parent)
+    return importlib.import_module("worker_models")
+
+
+def seconds(pool: ModelPool, start) -> float:
+    began = time.perf_counter()
+    assert all(run.error is None for run in pool.run([start] * N_DESIGNS))
+    return time.perf_counter() - began
+
+
+def test_two_workers_over_one(benchmark, models):
+    """In turn, so that what else the machine does slows down all: the least time of each."""
+    prob = models.low_noise()
+    prob.run_model()
+    start = prob.model.get_nonlinear_vectors()[1].asarray(copy=True)
+    spawned = multiprocessing.get_context("spawn")
+    with (
+        start_workers(1) as one,
+        start_workers(2) as two,
+        ProcessPoolExecutor(2, mp_context=spawned) as two_free,
+    ):
+        executors = {"one": one, "two": two, "two with threads": two_free}
+        pools = {
+            name: ModelPool(models.low_noise, prob.model, executor)
+            for name, executor in executors.items()
+        }
+        for pool in pools.values():
+            seconds(pool, start)  # builds and compiles
+        least = dict.fromkeys(pools, float("inf"))
+        for _ in range(ROUNDS):
+            for name, pool in pools.items():
+                least[name] = min(least[name], seconds(pool, start))
+        benchmark.pedantic(seconds, (pools["two"], start), rounds=1)
+    rate = {name: N_DESIGNS / time_ for name, time_ in least.items()}
+    benchmark.extra_info["designs a second"] = {name: round(r, 2) for name, r in rate.items()}
+    benchmark.extra_info["two over one"] = round(rate["two"] / rate["one"], 2)
+    print(f"\ndesigns a second {rate}; two over one: {rate['two'] / rate['one']:.2f}")

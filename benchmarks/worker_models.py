@@ -1,0 +1,27 @@
+"""What workers build in benchmarks, in a module that they can import."""
+
+import openmdao.api as om
+
+from propmdao.acoustics.observers import arc
+from propmdao.components import PropellerGroup
+from propmdao.propeller import load_propeller
+
+
+def low_noise():
+    """Low noise at 8 m/s and 1.2 N by twist and chord, at full resolution."""
+    three_points = [0.15, 0.5, 1.0]
+    prob = om.Problem(reports=False)
+    prob.model.add_subsystem(
+        "propeller",
+        PropellerGroup(
+            propeller=load_propeller("apcsf_11x4.7"),
+            observers=arc(1.905, -45.0),
+            design_distributions={"beta": three_points, "chord_over_R": three_points},
+            rpm_bounds=(3000.0, 6000.0),
+        ),
+        promotes=["*"],
+    )
+    prob.setup(mode="rev")
+    prob.set_val("speed", 8.0)
+    prob.set_val("thrust_required", 1.2)
+    return prob
