@@ -51,13 +51,14 @@ class DifferentialEvolutionDriver(Driver):
     - After an interrupt (Ctrl-C) the model is run once at the best design found so far, then
       ``KeyboardInterrupt`` propagates. The same holds when a worker dies (``WorkerLostError``).
     - With ``checkpoint`` every design is on disk once it is evaluated. Run again after whatever
-      ended it, even a kill, the search takes the designs it knows from there and goes on to the
-      same end; with more generations or time than before it goes on from its end.
+      ended it, even a kill, the search goes on from there to the same end, or beyond it.
     - With ``n_workers`` or ``executor`` the designs of a generation run side by side, on Problems
       that the workers build by ``problem_factory`` and that start from the values of this one.
-      The search, its files and its recorded cases are the same, whatever the number of workers.
-    - Cases that come from a checkpoint are recorded again, with design variables, independent
-      variables, objective and constraints as they were; outputs that it does not hold are nan.
+      The search, its files and its recorded cases are the same, whatever the number of workers,
+      if the model computes the same numbers on one thread as on several. Each worker has one; an
+      executor of your own needs `propmdao.worker_processes.use_one_thread` as its initializer.
+    - Cases from a checkpoint are recorded again; outputs that it does not hold are nan, which are
+      all but independent variables, objective and constraints.
 
     When no feasible design was found, ``fail`` is True and the Problem is left at the design with
     the smallest total violation, or where every analysis failed at the initial design.
@@ -161,10 +162,8 @@ class DifferentialEvolutionDriver(Driver):
             seed = self._checkpoint.seed
         budget = self.options["time_budget"]
         self._deadline = math.inf if budget is None else time.monotonic() + budget
-        workers = {
-            name: self.options[name] for name in ("n_workers", "executor", "problem_factory")
-        }
-        with model_pool(self._problem().model, **workers) as self._pool:
+        workers = [self.options[name] for name in ("n_workers", "executor", "problem_factory")]
+        with model_pool(self._problem().model, *workers) as self._pool:
             return self._run_search(np.random.default_rng(seed))
 
     def _run_search(self, rng: np.random.Generator) -> bool:

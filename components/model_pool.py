@@ -9,7 +9,7 @@ import tempfile
 import threading
 import traceback
 from collections.abc import Callable, Iterable, Iterator
-from concurrent.futures import Executor
+from concurrent.futures import BrokenExecutor, Executor
 from functools import partial
 from typing import Any
 
@@ -81,6 +81,12 @@ class ModelPool:
                 " at the top of a module, or functools.partial of one"
             ) from error
         self._executor = executor
+
+    def build_ahead(self, n_workers: int) -> None:
+        """Have so many idle workers build the model, side by side instead of one by one."""
+        with contextlib.suppress(BrokenExecutor):  # which the first run says
+            for _ in range(n_workers):
+                self._executor.submit(_build_ahead, self._task)
 
     def run(self, starts: Iterable[Array]) -> Iterator[ModelRun]:
         """Run the model from each of several outputs vectors.
@@ -155,7 +161,9 @@ def model_pool(
         # A Problem that is set up clears the reports of its name: they would be this process's.
         folder = stack.enter_context(tempfile.TemporaryDirectory())
         workers = stack.enter_context(start_workers(n_workers, {"OPENMDAO_WORKDIR": folder}))
-        yield ModelPool(problem_factory, model, workers)
+        pool = ModelPool(problem_factory, model, workers)
+        pool.build_ahead(n_workers)
+        yield pool
 
 
 def put_outputs(model: om.Group, values: Array) -> None:
@@ -182,11 +190,8 @@ def _run_model(task: bytes, start: Array) -> ModelRun:
     """Run the model of a task in this worker."""
     built = False
     try:
-        if getattr(_WORKER, "task", None) != task:
-            _WORKER.problem = _build(task)
-            _WORKER.task = task
+        model = _problem(task).model
         built, failure = True, ""
-        model = _WORKER.problem.model
         outputs = model.get_nonlinear_vectors()[1]
         outputs.set_val(start)
         try:
@@ -196,6 +201,20 @@ def _run_model(task: bytes, start: Array) -> ModelRun:
         return ModelRun(outputs.asarray(copy=True), failure)
     except Exception as error:
         return ModelRun(start, error=_that_travels(error), built=built)
+
+
+def _problem(task: bytes) -> om.Problem:
+    """Problem of this worker for a task, built on first use."""
+    if getattr(_WORKER, "task", None) != task:
+        _WORKER.problem = _build(task)
+        _WORKER.task = task
+    problem: om.Problem = _WORKER.problem
+    return problem
+
+
+def _build_ahead(task: bytes) -> None:
+    with contextlib.suppress(Exception):  # which the first run says
+        _problem(task)
 
 
 def _build(task: bytes) -> om.Problem:

@@ -107,6 +107,7 @@ def test_generators_of_openmdao(models, tmp_path):
     assert [row["radius"] for row in rows_of(tmp_path / "listed.csv")] == ["0.5", "2.0"]
 
 
+@pytest.mark.filterwarnings("ignore:Passing a seed")  # OpenMDAO, of pydoe
 def test_latin_hypercube_of_openmdao(models, tmp_path):
     pytest.importorskip("pydoe", reason="pydoe, an extra, is not installed")
     hypercube = LatinHypercubeGenerator(
