@@ -1,11 +1,13 @@
-"""A propeller of ours, with its loads at one operating point, as a case for PSU-WOPWOP."""
+"""A propeller of ours for PSU-WOPWOP: its blade, or with its loads a whole case."""
 
 from __future__ import annotations
 
+import dataclasses
 from pathlib import Path
 
 import jax.numpy as jnp
 import numpy as np
+from jax import Array
 from numpy.typing import ArrayLike
 
 from propmdao.acoustics.formulation1a import require_subsonic_tip
@@ -17,7 +19,39 @@ from propmdao.geometry.blade import Blade, span_interpolation
 from propmdao.geometry.surface import surface_nodes, surface_span
 from propmdao.propeller import Propeller
 from propmdao.records import PointLoads
+from propmdao.wopwop.blade_files import blade_geometry
+from propmdao.wopwop.geometry_file import write_geometry
 from propmdao.wopwop.write_case import write_case
+
+
+def write_blade(
+    path: str | Path,
+    propeller: Propeller,
+    fidelity: Fidelity = Fidelity(),  # noqa: B008 - frozen
+) -> None:
+    """Write the surface of a blade as a PSU-WOPWOP geometry ("patch") file.
+
+    Parameters
+    ----------
+    path : str or Path
+        Where to.
+    propeller : Propeller
+        The described blade.
+    fidelity : Fidelity
+        Numbers of panels of the surface.
+
+    Raises
+    ------
+    ValueError
+        If the file cannot be written.
+    """
+    geometry = dataclasses.replace(
+        blade_geometry(_surface(propeller, fidelity), None), comment=f"propmdao {propeller.name}"
+    )
+    try:
+        write_geometry(path, geometry)
+    except OSError as error:
+        raise ValueError(f"{path}: {error.strerror or error}") from None
 
 
 def write_propeller_case(
@@ -62,17 +96,20 @@ def write_propeller_case(
         raise ValueError(f"rpm must be positive for a PSU-WOPWOP case; it is {rpm:g}")
     omega = rpm * np.pi / 30
     require_subsonic_tip(0.5 * propeller.diameter, omega, speed, sound_speed)
-    stations = propeller.r_over_R
-    span = span_interpolation(stations, surface_span(stations[0], fidelity.n_surface_span))
-    nodes = surface_nodes(Blade.from_propeller(propeller), span, fidelity.n_contour)
     velocity = np.array([0.0, 0.0, speed])
     write_case(
         folder,
         [Rotor(equally_spaced(propeller.n_blades), omega, loads=loads)],
-        [nodes],
+        [_surface(propeller, fidelity)],
         Observers(jnp.asarray(observers, float).reshape(-1, 3), jnp.asarray(velocity)),
         np.arange(n_times) * 2 * np.pi / (omega * n_times),
         density,
         sound_speed,
         (translation(velocity=velocity),),
     )
+
+
+def _surface(propeller: Propeller, fidelity: Fidelity) -> Array:
+    stations = propeller.r_over_R
+    span = span_interpolation(stations, surface_span(stations[0], fidelity.n_surface_span))
+    return surface_nodes(Blade.from_propeller(propeller), span, fidelity.n_contour)

@@ -8,6 +8,7 @@ import jax.numpy as jnp
 import numpy as np
 import pytest
 
+from propmdao.acoustics import flyover
 from propmdao.acoustics.flyover import flyover_histories
 from propmdao.acoustics.motion import rotation, translation
 from propmdao.acoustics.moving_sources import PeriodicLoads
@@ -136,6 +137,11 @@ class TestRefused:
 
     def test_times_that_are_not_even(self, rotor):
         self.refused("observer times must be evenly spaced", [rotor], t=np.array([0, 1, 3]) / FS)
+
+    def test_tones_that_change_too_fast(self, rotor, monkeypatch):
+        monkeypatch.setattr(flyover, "_MOST_POSITIONS", 16)
+        monkeypatch.setattr(flyover, "_TOLERANCE", 1e-12)
+        self.refused("too fast along the track for 16 positions", [rotor], t=np.arange(FS) / FS)
 
     def test_supersonic_tips(self, rotor):
         fast = dataclasses.replace(rotor, rotation_speed=2600.0)
