@@ -131,8 +131,8 @@ def sweep(
     """Analyse a propeller at many points into a table.
 
     Points that the table has are left as they are, so that a sweep that was ended goes on, and one
-    that is given more points adds these. A point that cannot be analysed becomes a row that says
-    why. The table is the same with any number of workers.
+    that is given more points adds these. A point that cannot be analysed, or does not converge,
+    becomes a row that says why. The table is the same with any number of workers.
 
     Parameters
     ----------
@@ -251,7 +251,8 @@ def _analysed(
         for heard in results.pop("observers")
         for name in _LEVELS
     }
-    return results | levels, ""
+    unconverged = "" if results["converged"] else "the solution has not converged"
+    return results | levels, results.get("failure") or unconverged
 
 
 def _suffix(radius: float, elevation_deg: float) -> str:

@@ -147,6 +147,17 @@ def test_failed_points_are_rows_with_the_reason(
     assert rows_of(path)[0]["rpm"] == "4000.0"  # found for the thrust
 
 
+def test_a_point_that_does_not_converge_has_failed_and_keeps_its_numbers(
+    analyzer: Analyzer, propeller: Propeller, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    to_dict = Analyzer.to_dict
+    monkeypatch.setattr(Analyzer, "to_dict", lambda self: to_dict(self) | {"converged": False})
+    _, failures = sweep(propeller, [{"rpm": 3000.0}], tmp_path / "sweep.csv")
+    assert failures == ["the solution has not converged"]
+    (row,) = rows_of(tmp_path / "sweep.csv")
+    assert (row["converged"], row["thrust"]) == ("False", "9000000.0")
+
+
 def test_a_sweep_goes_on_where_it_was_stopped_and_takes_more_points(
     analyzer: Analyzer, propeller: Propeller, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
