@@ -9,15 +9,17 @@ import numpy as np
 import openmdao.api as om
 
 from propmdao.aerodynamics.coefficients import coefficients
-from propmdao.aerodynamics.steady import solve_steady
+from propmdao.aerodynamics.polars import SectionPolars
+from propmdao.aerodynamics.steady import failure, solve_steady
 from propmdao.components.jax_component import Arrays, JaxComponent
+from propmdao.components.section_inputs import add_section_inputs, section_grid, with_inputs
 from propmdao.fidelity import Fidelity
 
 
 def n_loads(fidelity: Fidelity) -> int:
-    """Return the number of point forces on a blade: bound and chordwise segments."""
+    """Return the number of point forces on a blade: bound and chordwise segments, sections."""
     nc, ns = fidelity.n_chordwise, fidelity.n_spanwise
-    return nc * ns + nc * (ns + 1)
+    return nc * ns + nc * (ns + 1) + ns
 
 
 class AerodynamicsComp(JaxComponent):
@@ -36,6 +38,11 @@ class AerodynamicsComp(JaxComponent):
     thrust_guess : float
         Thrust where it is nearly known, as after a trim: half of the work, the same results;
         0 is no guess, ``N``.
+
+    section_polars : (n_spanwise, 3, n_re, n_alpha) array
+        With option `polars`: of `GeometryComp`.
+    sound_speed : float
+        With option `polars`: of the air, ``m/s``.
 
     Outputs
     -------
@@ -59,17 +66,23 @@ class AerodynamicsComp(JaxComponent):
         Tip radius [m].
     fidelity : Fidelity
         Numbers of panels.
+    polars : SectionPolars or None
+        Whose Reynolds numbers and angles `section_polars` has; None for inviscid flow.
+    stall_delay : bool
+        Whether rotation delays the stall of the sections.
 
     Raises
     ------
     om.AnalysisError
-        When thrust and wake do not agree with momentum theory, beyond its windmilling limit.
+        When the solution does not converge, with the reason.
     """
 
     def initialize(self) -> None:
         self.options.declare("n_blades", types=int, desc="Number of blades.")
         self.options.declare("radius", types=float, desc="Tip radius [m].")
         self.options.declare("fidelity", Fidelity(), types=Fidelity, desc="Numbers of panels.")
+        self.options.declare("polars", None, types=SectionPolars, allow_none=True, desc="Or None.")
+        self.options.declare("stall_delay", True, types=bool, desc="Of rotating sections.")
 
     def setup(self) -> None:
         fidelity = self.options["fidelity"]
@@ -90,27 +103,37 @@ class AerodynamicsComp(JaxComponent):
         self.add_output(
             "load_force", shape=(n_loads(fidelity), 3), units="N", desc="Force on the fluid."
         )
+        polars, grid = self.options["polars"], None
+        if polars is not None:
+            add_section_inputs(self, polars, ns)
+            grid = section_grid(polars, self.options["stall_delay"])
         self.function = _steady
         self.static = self.options["n_blades"]
-        self.constants = jnp.asarray(self.options["radius"])
+        self.constants = jnp.asarray(self.options["radius"]), grid
 
     def check(self, inputs: Any, values: Any) -> None:
-        if not values["converged"]:
+        reason = failure(values["solution"])
+        if reason:
             raise om.AnalysisError(
-                "thrust and wake do not agree with momentum theory: thrust "
-                f"{float(values['thrust'][0]):.4g} N at {inputs['rpm'][0]:g} rpm and "
-                f"{inputs['speed'][0]:g} m/s"
+                f"{reason}, at {inputs['rpm'][0]:g} rpm and {inputs['speed'][0]:g} m/s"
             )
 
 
 def _steady(inputs: Arrays, constants: Any, static: int) -> Arrays:
-    n_blades, radius = static, constants
+    n_blades, (radius, grid) = static, constants
     rpm, speed, density, thrust_guess = (
         inputs[name][0] for name in ("rpm", "speed", "density", "thrust_guess")
     )
     omega = rpm * (np.pi / 30.0)
     solution = solve_steady(
-        inputs["lattice_nodes"], n_blades, radius, omega, speed, density, thrust_guess=thrust_guess
+        inputs["lattice_nodes"],
+        n_blades,
+        radius,
+        omega,
+        speed,
+        density,
+        with_inputs(grid, inputs),
+        thrust_guess=thrust_guess,
     )
     of = coefficients(solution.thrust, solution.torque, omega, speed, density, 2.0 * radius)
     return {
@@ -125,5 +148,5 @@ def _steady(inputs: Arrays, constants: Any, static: int) -> Arrays:
         "circulation": solution.circulation,
         "load_position": solution.point_loads.position,
         "load_force": solution.point_loads.force,
-        "converged": solution.converged,
+        "solution": solution,
     }

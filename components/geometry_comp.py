@@ -1,4 +1,4 @@
-"""Blade distributions to vortex lattice and surface mesh."""
+"""Blade distributions to vortex lattice, surface mesh and section polars."""
 
 from __future__ import annotations
 
@@ -8,16 +8,12 @@ from typing import Any
 import numpy as np
 import openmdao.api as om
 
+from propmdao.aerodynamics.polars import SectionPolars, blade_tables
+from propmdao.aerodynamics.strips import strip_radii
 from propmdao.components.jax_component import Arrays, JaxComponent
 from propmdao.fidelity import Fidelity
-from propmdao.geometry.blade import (
-    Blade,
-    SpanInterpolation,
-    design_lift_coefficient,
-    span_interpolation,
-)
-from propmdao.geometry.lattice import lattice_nodes, lattice_span
-from propmdao.geometry.surface import surface_nodes, surface_span
+from propmdao.geometry.blade import Blade, design_lift_coefficient, span_interpolation
+from propmdao.geometry.meshes import blade_meshes, mesh_radii
 from propmdao.propeller import Propeller
 
 CAMBER_INPUTS = ("camber_over_chord", "design_lift_coefficient")
@@ -72,6 +68,9 @@ class GeometryComp(JaxComponent):
         Corner points of the vortex lattice, leading edge and root first, ``m``.
     surface_nodes : (n_contour, n_surface_span, 3) array
         Points of the section contours for acoustics, ``m``.
+    section_polars : (n_spanwise, 3, n_re, n_alpha) array
+        With option `polars`: lift, logarithm of drag and moment coefficients of the sections in the
+        middle of the strips, the values of a `propmdao.aerodynamics.polars.PolarTable`.
 
     Options
     -------
@@ -81,6 +80,8 @@ class GeometryComp(JaxComponent):
         Numbers of panels.
     camber : str
         Which of the two camber inputs there is.
+    polars : SectionPolars or None
+        Of `propmdao.aerodynamics.polars.polars_for`; None for inviscid flow.
 
     Raises
     ------
@@ -94,6 +95,7 @@ class GeometryComp(JaxComponent):
         self.options.declare(
             "camber", "camber_over_chord", values=CAMBER_INPUTS, desc="How camber is given."
         )
+        self.options.declare("polars", None, types=SectionPolars, allow_none=True, desc="Or None.")
 
     def setup(self) -> None:
         propeller, fidelity = self.options["propeller"], self.options["fidelity"]
@@ -112,13 +114,22 @@ class GeometryComp(JaxComponent):
             desc="Points of the section contours of blade 1.",
         )
         stations = propeller.r_over_R
-        root = float(stations[0])
-        self.function = _meshes
+        polars, sections = self.options["polars"], None
+        if polars is not None:
+            radii = strip_radii(float(stations[0]), fidelity.n_spanwise)
+            sections = span_interpolation(stations, radii)
+            self.add_output(
+                "section_polars",
+                shape=(fidelity.n_spanwise, *polars.values.shape[3:]),
+                desc="Polars of the sections in the middle of the strips.",
+            )
+        self.function = _geometry
         self.static = fidelity
         self.constants = (
             Blade.from_propeller(propeller),
-            span_interpolation(stations, lattice_span(root, fidelity.n_spanwise)),
-            span_interpolation(stations, surface_span(root, fidelity.n_surface_span)),
+            mesh_radii(stations, fidelity.n_spanwise, fidelity.n_surface_span),
+            polars,
+            sections,
         )
 
     def check(self, inputs: Any, values: Any) -> None:
@@ -135,17 +146,16 @@ class GeometryComp(JaxComponent):
                 )
 
 
-def _meshes(
-    inputs: Arrays, constants: tuple[Blade, SpanInterpolation, SpanInterpolation], static: Fidelity
-) -> Arrays:
-    blade, lattice_radii, surface_radii = constants
+def _geometry(inputs: Arrays, constants: Any, static: Fidelity) -> Arrays:
+    blade, radii, polars, sections = constants
     changed = dict(inputs)
     if "design_lift_coefficient" in changed:
         changed["camber_over_chord"] = changed.pop(
             "design_lift_coefficient"
         ) / design_lift_coefficient(blade.camber_shape)
     blade = dataclasses.replace(blade, **changed)
-    return {
-        "lattice_nodes": lattice_nodes(blade, lattice_radii, static.n_chordwise),
-        "surface_nodes": surface_nodes(blade, surface_radii, static.n_contour),
-    }
+    lattice, surface = blade_meshes(blade, radii, static.n_chordwise, static.n_contour)
+    outputs = {"lattice_nodes": lattice, "surface_nodes": surface}
+    if polars is not None:
+        outputs["section_polars"] = blade_tables(polars, blade, sections).values
+    return outputs

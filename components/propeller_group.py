@@ -7,6 +7,7 @@ from collections.abc import Mapping
 import numpy as np
 import openmdao.api as om
 
+from propmdao.aerodynamics.polars import SectionPolars, polars_for
 from propmdao.aerodynamics.trim import LARGEST_TIP_SPEED, LEAST_TIP_SPEED
 from propmdao.components.acoustics_comp import AcousticsComp
 from propmdao.components.aerodynamics_comp import AerodynamicsComp, n_loads
@@ -46,8 +47,8 @@ class PropellerGroup(om.Group):
         Of `AerodynamicsComp`, ``N``, ``N*m``, ``W``.
     spl_bpf_db, oaspl_db, oaspl_thickness_db, oaspl_loading_db, oaspl_dba : (n_observers,) arrays
         Levels of the tones, dB re 20 uPa.
-    lattice_nodes, surface_nodes, circulation, load_position, load_force, mean_square_pressure, \
-frequency
+    lattice_nodes, surface_nodes, section_polars, circulation, load_position, load_force, \
+mean_square_pressure, frequency
         As in `GeometryComp`, `AerodynamicsComp` and `AcousticsComp`.
 
     Options
@@ -70,6 +71,13 @@ frequency
     spline_method : str
         What leads through the control points: ``"slinear"`` (straight lines), ``"akima"`` or
         ``"cubic"``.
+    viscous : bool
+        Hold the lattice to the polars of the sections (default); False for inviscid flow.
+    stall_delay : bool
+        Whether rotation delays the stall of the sections.
+    polars : SectionPolars or None
+        Of `propmdao.aerodynamics.polars.polars_for`, for tables of one's own; by default the
+        catalogue's.
     camber : str
         ``"camber_over_chord"``, or ``"design_lift_coefficient"`` to give camber as that.
     """
@@ -84,15 +92,23 @@ frequency
         declare("trim_method", "solve", values=METHODS, desc="How the rpm is found.")
         declare("design_distributions", {}, types=dict, desc="Name -> r/R of control points.")
         declare("spline_method", "slinear", values=SPLINE_METHODS, desc="Through control points.")
+        declare("viscous", True, types=bool, desc="Hold the lattice to section polars.")
+        declare("stall_delay", True, types=bool, desc="Of rotating sections.")
+        declare("polars", None, types=SectionPolars, allow_none=True, desc="Own ones.")
         declare("camber", "camber_over_chord", values=CAMBER_INPUTS, desc="How camber is given.")
 
     def setup(self) -> None:
         options = self.options
         propeller, fidelity = options["propeller"], options["fidelity"]
+        polars = None
+        if options["viscous"]:
+            polars = options["polars"] or polars_for(propeller)
         self._add_splines()
         self.add_subsystem(
             "geometry",
-            GeometryComp(propeller=propeller, fidelity=fidelity, camber=options["camber"]),
+            GeometryComp(
+                propeller=propeller, fidelity=fidelity, camber=options["camber"], polars=polars
+            ),
             promotes_outputs=["*"],
         )
         for name in blade_distributions(propeller, options["camber"]):
@@ -105,6 +121,8 @@ frequency
             "n_blades": int(propeller.n_blades),
             "radius": 0.5 * propeller.diameter,
             "fidelity": fidelity,
+            "polars": polars,
+            "stall_delay": options["stall_delay"],
         }
         trimmed = options["trim"] == "thrust"
         if trimmed:
@@ -127,6 +145,7 @@ frequency
                 "rpm",
                 "speed",
                 "density",
+                *([] if polars is None else ["section_polars", "sound_speed"]),
                 ("thrust_guess", "thrust_required") if trimmed else "thrust_guess",
             ],
             promotes_outputs=["*"],
@@ -134,6 +153,7 @@ frequency
         if trimmed:
             # The thrust that the trim reaches is also where the loads start looking.
             self.set_input_defaults("thrust_required", 1.0, units="N")
+        self.set_input_defaults("sound_speed", 340.294, units="m/s")
         self.add_subsystem(
             "acoustics",
             AcousticsComp(

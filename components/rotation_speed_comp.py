@@ -8,6 +8,7 @@ import jax.numpy as jnp
 import numpy as np
 import openmdao.api as om
 
+from propmdao.aerodynamics.polars import SectionPolars
 from propmdao.aerodynamics.trim import (
     TrimError,
     rotation_speed_by_interpolation,
@@ -15,6 +16,7 @@ from propmdao.aerodynamics.trim import (
     solve_rotation_speed,
 )
 from propmdao.components.jax_component import Arrays, arrays, evaluate, reverse
+from propmdao.components.section_inputs import add_section_inputs, section_grid, with_inputs
 from propmdao.fidelity import Fidelity
 
 METHODS = ("solve", "two_point")
@@ -34,6 +36,8 @@ class RotationSpeedComp(om.ExplicitComponent):
         Air density, ``kg/m**3``.
     thrust_required : float
         Thrust of all blades, ``N``.
+    section_polars, sound_speed
+        With option `polars`: as `AerodynamicsComp` takes them.
 
     Outputs
     -------
@@ -54,6 +58,10 @@ class RotationSpeedComp(om.ExplicitComponent):
         ``"solve"``: the thrust is the required one. ``"two_point"``: the thrust is computed at the
         two bounds and taken as linear in between, the rule of the thesis; it misses the thrust
         required by some per cent and is there to show by how much.
+    polars : SectionPolars or None
+        Whose Reynolds numbers and angles `section_polars` has; None for inviscid flow.
+    stall_delay : bool
+        Whether rotation delays the stall of the sections.
 
     Raises
     ------
@@ -67,6 +75,8 @@ class RotationSpeedComp(om.ExplicitComponent):
         self.options.declare("fidelity", Fidelity(), types=Fidelity, desc="Numbers of panels.")
         self.options.declare("rpm_bounds", types=tuple, desc="Lowest and highest rpm.")
         self.options.declare("method", "solve", values=METHODS, desc="How the rpm is found.")
+        self.options.declare("polars", None, types=SectionPolars, allow_none=True, desc="Or None.")
+        self.options.declare("stall_delay", True, types=bool, desc="Of rotating sections.")
 
     def setup(self) -> None:
         low, high = self.options["rpm_bounds"]
@@ -78,10 +88,15 @@ class RotationSpeedComp(om.ExplicitComponent):
         self.add_input("speed", val=0.0, units="m/s")
         self.add_input("density", val=1.225, units="kg/m**3")
         self.add_input("thrust_required", val=1.0, units="N")
+        polars, grid = self.options["polars"], None
+        if polars is not None:
+            add_section_inputs(self, polars, fidelity.n_spanwise)
+            grid = section_grid(polars, self.options["stall_delay"])
         self.add_output("rpm", val=np.sqrt(low * high), units="rpm")
 
         self.declare_partials("rpm", "*")
-        self.constants = jnp.array([self.options["radius"], low * _RAD_PER_S, high * _RAD_PER_S])
+        bounds = jnp.array([self.options["radius"], low * _RAD_PER_S, high * _RAD_PER_S])
+        self.constants = bounds, grid
 
     def compute(self, inputs: Any, outputs: Any) -> None:
         if self.options["method"] == "solve":
@@ -97,12 +112,13 @@ class RotationSpeedComp(om.ExplicitComponent):
             partials["rpm", name] = gradient.reshape(1, -1)
 
     def _solve(self, inputs: Arrays) -> Any:
-        nodes, n_blades, radius, speed, density, thrust, low, high = _arguments(
+        *operating, low, high, sections = _arguments(
             inputs, self.constants, self.options["n_blades"]
         )
+        nodes, n_blades, radius, speed, density, thrust = operating
         try:
             return rotation_speed_for_thrust(
-                nodes, n_blades, radius, speed, density, thrust, (low, high)
+                nodes, n_blades, radius, speed, density, thrust, (low, high), sections
             )
         except TrimError as error:
             raise om.AnalysisError(str(error)) from error
@@ -121,8 +137,9 @@ class RotationSpeedComp(om.ExplicitComponent):
 
 def _arguments(inputs: Arrays, constants: Any, n_blades: int) -> tuple[Any, ...]:
     scalars = (inputs[name][0] for name in ("speed", "density", "thrust_required"))
-    radius, low, high = constants
-    return inputs["lattice_nodes"], n_blades, radius, *scalars, low, high
+    (radius, low, high), grid = constants
+    sections = with_inputs(grid, inputs)
+    return inputs["lattice_nodes"], n_blades, radius, *scalars, low, high, sections
 
 
 def _solved(inputs: Arrays, constants: Any, static: int) -> Arrays:

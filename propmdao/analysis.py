@@ -16,12 +16,20 @@ from propmdao.acoustics.formulation1a import Tones, require_subsonic_tip, tones
 from propmdao.acoustics.levels import oaspl_db, oaspl_dba, spl_db, third_octave
 from propmdao.acoustics.observers import arc
 from propmdao.aerodynamics.coefficients import Coefficients, coefficients
-from propmdao.aerodynamics.steady import SteadySolution, solve_steady
+from propmdao.aerodynamics.polars import (
+    SectionPolars,
+    polars_for,
+    warn_outside,
+    warn_outside_sections,
+)
+from propmdao.aerodynamics.section_coupling import ViscousSections, viscous_sections
+from propmdao.aerodynamics.steady import SteadySolution, failure, solve_steady
+from propmdao.aerodynamics.strips import strip_radii
 from propmdao.aerodynamics.trim import rotation_bounds, steady_for_thrust
 from propmdao.fidelity import Fidelity
-from propmdao.geometry.blade import Blade, SpanInterpolation, span_interpolation
-from propmdao.geometry.lattice import lattice_nodes, lattice_span
-from propmdao.geometry.surface import Panels, surface_nodes, surface_panels, surface_span
+from propmdao.geometry.blade import Blade, span_interpolation
+from propmdao.geometry.meshes import MeshRadii, blade_meshes, mesh_radii
+from propmdao.geometry.surface import Panels, surface_panels
 from propmdao.propeller import Propeller
 
 SOUND_SPEED = 340.294
@@ -36,6 +44,8 @@ class Analysis:
     ----------
     rpm, speed, density : float
         Rotation speed [rev/min], axial flight speed [m/s], air density [kg/m^3].
+    viscous : bool
+        Whether the lattice was held to section polars.
     steady : SteadySolution
         Loads of the vortex lattice.
     coefficients : Coefficients
@@ -49,6 +59,7 @@ class Analysis:
     rpm: float
     speed: float
     density: float
+    viscous: bool
     steady: SteadySolution
     coefficients: Coefficients
     observers: npt.NDArray[np.float64]
@@ -60,8 +71,8 @@ class Analysis:
         Returns
         -------
         dict
-            rpm, speed, rho, J, thrust, torque, shaft_power, CT, CQ, CP, eta, converged and a list
-            of observers with their levels.
+            rpm, speed, rho, J, thrust, torque, shaft_power, CT, CQ, CP, eta, viscous, converged,
+            failure (None, or why it did not converge) and a list of observers with their levels.
         """
         levels = jax.tree.map(np.asarray, _levels(self.tones))
         return {
@@ -76,7 +87,9 @@ class Analysis:
             "CQ": float(self.coefficients.CQ),
             "CP": float(self.coefficients.CP),
             "eta": float(self.coefficients.eta),
+            "viscous": self.viscous,
             "converged": bool(self.steady.converged),
+            "failure": failure(self.steady),
             "observers": [self._observer(i, levels) for i in range(len(self.observers))],
         }
 
@@ -118,6 +131,9 @@ def analyze(
     speed: float = 0.0,
     density: float = 1.225,
     twist_offset_deg: float = 0.0,
+    viscous: bool = True,
+    stall_delay: bool = True,
+    polars: SectionPolars | None = None,
     observers: Sequence[tuple[float, float]] = (),
     fidelity: Fidelity = Fidelity(),  # noqa: B008 - frozen
 ) -> Analysis:
@@ -135,6 +151,13 @@ def analyze(
         Air density [kg/m^3].
     twist_offset_deg : float
         Added to the blade angle all over the span [deg].
+    viscous : bool
+        Hold the lattice to the polars of the sections; False for inviscid flow.
+    stall_delay : bool
+        Whether rotation delays the stall of the sections.
+    polars : SectionPolars, optional
+        Of `propmdao.aerodynamics.polars.polars_for`, for tables of one's own; by default the
+        catalogue's.
     observers : sequence of (radius, elevation_deg)
         Microphones flying along with the rotor, on an arc around its centre: distance [m] and
         elevation from the rotor plane, negative on the wake's side [deg].
@@ -157,25 +180,29 @@ def analyze(
     propeller = dataclasses.replace(propeller, beta_deg=propeller.beta_deg + twist_offset_deg)
     blade = Blade.from_propeller(propeller)
     stations = propeller.r_over_R
-    nodes, panels = blade_meshes(
-        blade,
-        span_interpolation(stations, lattice_span(stations[0], fidelity.n_spanwise)),
-        span_interpolation(stations, surface_span(stations[0], fidelity.n_surface_span)),
-        fidelity.n_chordwise,
-        fidelity.n_contour,
-    )
+    radii = mesh_radii(stations, fidelity.n_spanwise, fidelity.n_surface_span)
+    nodes, panels = _meshes(blade, radii, fidelity.n_chordwise, fidelity.n_contour)
+    sections = None
+    if viscous:
+        polars = polars or polars_for(propeller)
+        at = span_interpolation(stations, strip_radii(stations[0], fidelity.n_spanwise))
+        sections = viscous_sections(polars, blade, at, SOUND_SPEED, float(stall_delay))
     radius = 0.5 * propeller.diameter
     air = float(speed), float(density)
     if thrust is not None:
         bounds = rotation_bounds(radius, speed)
-        found, steady = steady_for_thrust(nodes, propeller.n_blades, radius, *air, thrust, bounds)
+        found, steady = steady_for_thrust(
+            nodes, propeller.n_blades, radius, *air, thrust, bounds, sections
+        )
         omega = float(found)
         rpm = omega / _RAD_PER_S
     else:
         assert rpm is not None
         omega = rpm * _RAD_PER_S
         require_subsonic_tip(radius, omega, speed, SOUND_SPEED)
-        steady = solve_steady(nodes, propeller.n_blades, radius, omega, *air)
+        steady = solve_steady(nodes, propeller.n_blades, radius, omega, *air, sections)
+    if sections is not None and polars is not None:
+        _warn_outside_polars(polars, sections, blade, stations, steady, float(density))
     points = np.asarray(observers, float).reshape(-1, 2)
     heard = tones(
         panels,
@@ -188,37 +215,32 @@ def analyze(
         fidelity.n_harmonics,
     )
     of = coefficients(steady.thrust, steady.torque, omega, *air, propeller.diameter)
-    return Analysis(float(rpm), *air, steady, of, points, heard)
+    return Analysis(float(rpm), *air, viscous, steady, of, points, heard)
 
 
 @partial(jax.jit, static_argnames=("n_chordwise", "n_contour"))
-def blade_meshes(
-    blade: Blade,
-    lattice_radii: SpanInterpolation,
-    surface_radii: SpanInterpolation,
-    n_chordwise: int,
-    n_contour: int,
+def _meshes(
+    blade: Blade, radii: MeshRadii, n_chordwise: int, n_contour: int
 ) -> tuple[Array, Panels]:
-    """Lattice and closed surface of a blade.
+    """Lattice and closed surface of a blade."""
+    nodes, surface = blade_meshes(blade, radii, n_chordwise, n_contour)
+    return nodes, surface_panels(surface)
 
-    Parameters
-    ----------
-    blade : Blade
-        The blade.
-    lattice_radii, surface_radii : SpanInterpolation
-        Interpolation to the radii of either mesh.
-    n_chordwise, n_contour : int
-        Lattice panels over the chord, surface points around the section.
 
-    Returns
-    -------
-    nodes : (n_chordwise + 1, n_spanwise + 1, 3) array
-        Corner points of the lattice [m].
-    panels : Panels
-        Closed surface.
-    """
-    nodes = lattice_nodes(blade, lattice_radii, n_chordwise)
-    return nodes, surface_panels(surface_nodes(blade, surface_radii, n_contour))
+def _warn_outside_polars(
+    polars: SectionPolars,
+    sections: ViscousSections,
+    blade: Blade,
+    stations: npt.NDArray[np.float64],
+    steady: SteadySolution,
+    density: float,
+) -> None:
+    """Tell of sections that the polars do not reach."""
+    warn_outside_sections(polars, blade, stations)
+    w, strips = steady.sections.relative_speed, steady.strips
+    if np.all(np.asarray(w) > 0.0):
+        reynolds = density * w * strips.chord / sections.dynamic_viscosity
+        warn_outside(sections.polars, reynolds, strips.r_over_R, w / sections.sound_speed)
 
 
 def _check(

@@ -20,19 +20,19 @@ Notes = TypeVar("Notes")
 
 
 def decreasing_root(
-    residual: Callable[[Array], Array],
+    residual: Callable[[Array], tuple[Array, Results]],
     low: Scalar,
     high: Scalar,
     guess: Scalar,
     tolerance: float,
-) -> Array:
+) -> tuple[Array, Results]:
     """Root of a decreasing function by the secant method, kept inside a shrinking bracket.
 
     Parameters
     ----------
     residual : callable
-        Continuous function of slope about -1, positive at `low` and negative at `high`; the ends
-        are not evaluated.
+        Continuous function of slope about -1, positive at `low` and negative at `high`, and what
+        was computed on the way to it, any pytree; the ends are not evaluated.
     low, high, guess : float
         Bracket and first trial.
     tolerance : float
@@ -41,20 +41,17 @@ def decreasing_root(
 
     Returns
     -------
-    float
-        The root; where none is found in 60 evaluations, the last trial. `at_root` makes it
-        differentiable.
+    root, results : float, pytree
+        The root and the results there; where none is found in 60 evaluations, the last trial.
+        `at_root` makes them differentiable.
     """
 
     def unfinished(state: Any) -> Array:
-        count, _, _, x, x_before, f_before, moved = state
-        by_product = jnp.abs((x - x_before) * moved) > tolerance * x * x
-        by_residual = jnp.abs(f_before) > tolerance * jnp.abs(x)
-        return (count < _MAX_EVALUATIONS) & by_product & by_residual
+        return (state[0] < _MAX_EVALUATIONS) & ~state[-1]
 
     def step(state: Any) -> Any:
-        count, lo, hi, x, x_before, f_before, _ = state
-        f = residual(x)
+        count, lo, hi, x, x_before, f_before, moved, _, last, _ = state
+        f, results = residual(x)
         lo, hi = jnp.where(f > 0.0, x, lo), jnp.where(f > 0.0, hi, x)
         # The first step has no secant: bisecting would throw the guess away, so move as if the
         # slope were -1, which is that of x = g(x) with a constant g.
@@ -62,16 +59,27 @@ def decreasing_root(
         trial = x - f / slope
         inside = (trial > lo) & (trial < hi)
         following = jnp.where(inside | (f == 0.0), trial, 0.5 * (lo + hi))
-        return count + 1, lo, hi, following, x, f, x - x_before
+        close = jnp.abs((following - x) * (x - x_before)) <= tolerance * following**2
+        close = close | (jnp.abs(f) <= tolerance * jnp.abs(following))
+        # Where the next trial will do, it is evaluated once more, for the results there.
+        following = jnp.where(last, x, following)
+        return count + 1, lo, hi, following, x, f, x - x_before, results, close, last
 
-    none = jnp.asarray(jnp.inf)
-    start: Any = (0, *(jnp.asarray(value, float) for value in (low, high, guess)), none, none, none)
-    root: Array = jax.lax.while_loop(unfinished, step, start)[3]
-    return root
+    none, no = jnp.asarray(jnp.inf), jnp.asarray(False)
+    ends = (jnp.asarray(value, float) for value in (low, high, guess))
+    start: Any = (0, *ends, none, none, none, empty(residual, guess)[1], no, no)
+    state = jax.lax.while_loop(unfinished, step, start)
+    return state[3], state[7]
+
+
+def empty(function: Callable[..., Results], *arguments: Any) -> Results:
+    """Zeros in the shape of a function's results, to start a loop with."""
+    shapes = jax.eval_shape(function, *(jnp.asarray(x, float) for x in arguments))
+    return jax.tree.map(lambda shape: jnp.zeros(shape.shape, shape.dtype), shapes)
 
 
 def at_root(
-    solve: Callable[[Params], tuple[Array, Notes]],
+    solve: Callable[[Params], tuple[Array, Results, Notes]],
     evaluate: Callable[[Params, Array], Results],
     residual: Callable[[Params, Array, Results], Array],
     params: Params,
@@ -85,8 +93,9 @@ def at_root(
     Parameters
     ----------
     solve : callable
-        ``solve(params) -> (x, notes)`` finds the root, a scalar, by any means; notes on the search,
-        a pytree of floats, are passed on without a derivative.
+        ``solve(params) -> (x, results, notes)`` finds the root, a scalar, by any means, and the
+        results there; notes on the search, a pytree of floats, are passed on without a derivative.
+        That it also has the results keeps the model from being compiled twice.
     evaluate : callable
         ``evaluate(params, x)`` gives the results, any pytree of floats.
     residual : callable
@@ -102,8 +111,7 @@ def at_root(
 
     @jax.custom_jvp
     def converged(params: Params) -> tuple[Array, Results, Notes]:
-        x, notes = solve(params)
-        return x, evaluate(params, x), notes
+        return solve(params)
 
     @converged.defjvp
     def derivative(primals: tuple[Params], tangents: tuple[Params]) -> tuple[Any, Any]:

@@ -22,6 +22,8 @@ from propmdao.aerodynamics.lattice_loads import (
     loads_with_wake,
 )
 from propmdao.aerodynamics.roots import at_root, decreasing_root
+from propmdao.aerodynamics.section_coupling import SectionStates, ViscousSections
+from propmdao.aerodynamics.strips import Strips
 from propmdao.aerodynamics.wake import (
     core_radius,
     helical_wake,
@@ -39,6 +41,7 @@ WAKE_AGES = wake_azimuths(
 _INITIAL_CORE = 1.0e-4  # of the radius
 _KINEMATIC_VISCOSITY = 1.46e-5  # air at 15 C [m^2/s]; only the wake's core knows it
 _TOLERANCE = 1.0e-9  # relative, in the induced velocity
+_SETTLED = 1.0e-6  # lift coefficients of lattice and polars
 _GUESS = 0.05  # of the tip speed
 
 
@@ -59,9 +62,11 @@ class SteadySolution:
         [N], [N m].
     point_loads : PointLoads
         Forces of blade 1 on the fluid, for acoustics.
+    strips, sections : Strips, SectionStates
+        Sections of blade 1, and how they work.
     converged : bool
-        Whether thrust and induced velocity agree with momentum theory: False beyond its
-        windmilling limit.
+        Whether thrust and induced velocity agree with momentum theory, and lattice and polars on
+        the lift of every section; `failure` says what does not.
     """
 
     thrust: Array
@@ -71,6 +76,8 @@ class SteadySolution:
     strip_thrust: Array
     strip_torque: Array
     point_loads: PointLoads
+    strips: Strips
+    sections: SectionStates
     converged: Array
 
 
@@ -85,6 +92,8 @@ class Flow:
     radius, rotation_speed, speed, density : float
         Tip radius [m], rotation speed, not 0 [rad/s], axial flight speed [m/s], air density
         [kg/m^3].
+    sections : ViscousSections or None
+        Polars that the lattice is held to; None for inviscid flow.
     """
 
     lattice: LatticeGeometry
@@ -92,6 +101,7 @@ class Flow:
     rotation_speed: Scalar
     speed: Scalar
     density: Scalar
+    sections: ViscousSections | None
 
 
 _Params = tuple[Flow, Array, Array]  # with the wake's ages and the thrust guessed
@@ -142,7 +152,16 @@ def loads_at(
     trailing = flow.lattice.rings.corner[-1]
     wake = helical_wake(trailing, ages, n_blades, radius, omega, flow.speed, induced_velocity)
     core = core_radius(ages, omega, _KINEMATIC_VISCOSITY, _INITIAL_CORE * radius)
-    return loads_with_wake(flow.lattice, wake, core, omega, flow.speed, flow.density)
+    return loads_with_wake(
+        flow.lattice,
+        wake,
+        core,
+        omega,
+        flow.speed,
+        induced_velocity,
+        flow.density,
+        flow.sections,
+    )
 
 
 @partial(jax.jit, static_argnames="n_blades")
@@ -153,6 +172,7 @@ def solve_steady(
     rotation_speed: Scalar,
     speed: Scalar,
     density: Scalar,
+    sections: ViscousSections | None = None,
     wake_ages: Array | np.ndarray = WAKE_AGES,
     thrust_guess: Scalar = 0.0,
 ) -> SteadySolution:
@@ -167,6 +187,8 @@ def solve_steady(
     radius, rotation_speed, speed, density : float
         Tip radius [m], rotation speed, 0 gives zero loads [rad/s], axial flight speed, 0 is hover
         [m/s], air density [kg/m^3].
+    sections : ViscousSections, optional
+        Polars that the lattice is held to; without any the flow is inviscid.
     wake_ages : (n_nodes,) array
         Azimuth of the wake nodes behind the blade [rad].
     thrust_guess : float
@@ -185,6 +207,7 @@ def solve_steady(
         rotation_speed=jnp.where(turning, rotation_speed, 1.0),
         speed=jnp.asarray(speed, float),
         density=jnp.asarray(density, float),
+        sections=sections,
     )
     ages, thrust_guess = jnp.asarray(wake_ages), jnp.asarray(thrust_guess, float)
 
@@ -195,17 +218,23 @@ def solve_steady(
     def residual(params: _Params, w: Array, loads: LatticeLoads) -> Array:
         return induced_velocity(params[0], n_blades * loads.thrust) - w
 
-    def solve(params: _Params) -> tuple[Array, None]:
+    def solve(params: _Params) -> tuple[Array, LatticeLoads, None]:
         flow, _, thrust_guess = params
         tip_speed = flow.rotation_speed * flow.radius
         known = induced_velocity(flow, thrust_guess)
-        return decreasing_root(
-            lambda w: residual(params, w, evaluate(params, w)),
+
+        def trial(w: Array) -> tuple[Array, LatticeLoads]:
+            loads = evaluate(params, w)
+            return residual(params, w, loads), loads
+
+        w, loads = decreasing_root(
+            trial,
             -0.5 * flow.speed + 1.0e-6 * tip_speed,
             tip_speed,
             jnp.where(thrust_guess == 0.0, _GUESS * tip_speed, known),
             _TOLERANCE,
-        ), None
+        )
+        return w, loads, None
 
     w, loads, _ = at_root(solve, evaluate, residual, (flow, ages, thrust_guess))
     solution = steady_solution(flow, n_blades, w, loads)
@@ -213,6 +242,7 @@ def solve_steady(
     still = dataclasses.replace(
         still,
         point_loads=PointLoads(loads.position, still.point_loads.force),
+        strips=solution.strips,
         converged=jnp.asarray(True),
     )
     return jax.tree.map(lambda moving, still: jnp.where(turning, moving, still), solution, still)
@@ -243,6 +273,7 @@ def steady_solution(
     tip_speed, area = flow.rotation_speed * flow.radius, jnp.pi * flow.radius**2
     agrees = jnp.abs(induced_velocity(flow, thrust) - w) < 1.0e-6 * tip_speed
     within_momentum_theory = thrust > -0.5 * area * flow.density * flow.speed**2
+    settled = jnp.abs(loads.sections.residual).max() < _SETTLED
     strip_thrust, strip_torque = strip_loads(loads)
     return SteadySolution(
         thrust=thrust,
@@ -252,7 +283,38 @@ def steady_solution(
         strip_thrust=strip_thrust,
         strip_torque=strip_torque,
         point_loads=PointLoads(loads.position, -loads.force),
-        converged=agrees & within_momentum_theory,
+        strips=flow.lattice.strips,
+        sections=loads.sections,
+        converged=agrees & within_momentum_theory & settled,
+    )
+
+
+def failure(solution: SteadySolution) -> str | None:
+    """Say why a solution did not converge; call it outside ``jit``.
+
+    Parameters
+    ----------
+    solution : SteadySolution
+        The solution.
+
+    Returns
+    -------
+    str or None
+        One line, or None where it converged.
+    """
+    if solution.converged:
+        return None
+    residual = np.abs(np.asarray(solution.sections.residual))
+    worst = int(np.nanargmax(residual)) if np.isfinite(residual).any() else 0
+    if not residual[worst] < _SETTLED:
+        return (
+            f"lift coefficients of lattice and polar differ by {residual[worst]:.2g} at r/R "
+            f"{float(solution.strips.r_over_R[worst]):.2f}"
+        )
+    return (
+        f"thrust {float(solution.thrust):.4g} N and induced velocity "
+        f"{float(solution.induced_velocity):.4g} m/s do not agree with momentum theory: "
+        "beyond its windmilling limit"
     )
 
 
@@ -275,9 +337,9 @@ def strip_loads(loads: LatticeLoads) -> tuple[Array, Array]:
 
     def by_strip(of_segment: Array) -> Array:
         bound = of_segment[: nc * ns].reshape(nc, ns).sum(axis=0)
-        edge = of_segment[nc * ns :].reshape(nc, ns + 1).sum(axis=0)
+        edge = of_segment[nc * ns : -ns].reshape(nc, ns + 1).sum(axis=0)
         # The outermost edges have one strip only.
         share = edge * jnp.full(ns + 1, 0.5).at[jnp.array([0, ns])].set(1.0)
-        return bound + share[:-1] + share[1:]
+        return bound + share[:-1] + share[1:] + of_segment[-ns:]
 
     return by_strip(loads.force[:, 2]), by_strip(torque)

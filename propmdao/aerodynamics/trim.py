@@ -13,7 +13,8 @@ import numpy as np
 from jax import Array
 
 from propmdao.aerodynamics.lattice_loads import LatticeLoads, lattice_geometry
-from propmdao.aerodynamics.roots import at_root
+from propmdao.aerodynamics.roots import at_root, empty
+from propmdao.aerodynamics.section_coupling import ViscousSections
 from propmdao.aerodynamics.steady import (
     Flow,
     SteadySolution,
@@ -27,7 +28,7 @@ from propmdao.records import Scalar
 _TOLERANCE = 1.0e-8
 _MAX_EVALUATIONS = 60
 _RPM = 30.0 / np.pi
-_Asked = tuple[Array, int, float, float, float, float, float, float]
+_Asked = tuple[Array, int, float, float, float, float, float, float, ViscousSections | None]
 _Params = tuple[Flow, Array, tuple[Array, Array]]  # with the thrust required and the bounds
 
 
@@ -71,6 +72,7 @@ def rotation_speed_for_thrust(
     density: float,
     thrust_required: float,
     bounds: tuple[float, float],
+    sections: ViscousSections | None = None,
 ) -> Array:
     """Solve for the rotation speed that gives the required thrust.
 
@@ -84,6 +86,8 @@ def rotation_speed_for_thrust(
         Tip radius [m], axial flight speed [m/s], air density [kg/m^3], thrust of all blades [N].
     bounds : (float, float)
         Lowest and highest rotation speed [rad/s].
+    sections : ViscousSections, optional
+        Polars that the lattice is held to; without any the flow is inviscid.
 
     Returns
     -------
@@ -95,7 +99,7 @@ def rotation_speed_for_thrust(
     TrimError
         The thrust required lies outside what the bounds give; the message has both ends.
     """
-    asked = _asked(nodes, n_blades, radius, speed, density, thrust_required, bounds)
+    asked = _asked(nodes, n_blades, radius, speed, density, thrust_required, bounds, sections)
     omega, missing = solve_rotation_speed(*asked)
     _require_reached(omega, missing, asked)
     return omega
@@ -109,6 +113,7 @@ def steady_for_thrust(
     density: float,
     thrust_required: float,
     bounds: tuple[float, float],
+    sections: ViscousSections | None = None,
 ) -> tuple[Array, SteadySolution]:
     """Solve for the rotation speed that gives the required thrust, and the loads there.
 
@@ -116,7 +121,7 @@ def steady_for_thrust(
 
     Parameters
     ----------
-    nodes, n_blades, radius, speed, density, thrust_required, bounds
+    nodes, n_blades, radius, speed, density, thrust_required, bounds, sections
         As for `rotation_speed_for_thrust`.
 
     Returns
@@ -129,7 +134,7 @@ def steady_for_thrust(
     TrimError
         As `rotation_speed_for_thrust`.
     """
-    asked = _asked(nodes, n_blades, radius, speed, density, thrust_required, bounds)
+    asked = _asked(nodes, n_blades, radius, speed, density, thrust_required, bounds, sections)
     omega, missing, solution = _solve_trimmed(*asked)
     _require_reached(omega, missing, asked)
     return omega, solution
@@ -143,6 +148,7 @@ def _asked(
     density: float,
     thrust: float,
     bounds: tuple[float, float],
+    sections: ViscousSections | None,
 ) -> _Asked:
     """Arguments of the compiled trims, of one type each so that they compile once."""
     low, high = (float(bound) for bound in bounds)
@@ -151,7 +157,8 @@ def _asked(
             "rpm bounds must be positive and increasing; "
             f"they are {low * _RPM:g} and {high * _RPM:g}"
         )
-    return nodes, n_blades, float(radius), float(speed), float(density), float(thrust), low, high
+    operating = float(radius), float(speed), float(density), float(thrust)
+    return nodes, n_blades, *operating, low, high, sections
 
 
 def _require_reached(omega: Array, missing: tuple[Array, Array], asked: _Asked) -> None:
@@ -159,9 +166,9 @@ def _require_reached(omega: Array, missing: tuple[Array, Array], asked: _Asked) 
     at_low, at_high = missing
     if at_low >= 0.0 >= at_high and np.isfinite(omega):
         return
-    nodes, n_blades, radius, speed, density, thrust, low, high = asked
+    nodes, n_blades, radius, speed, density, thrust, low, high, sections = asked
     at = [
-        float(solve_steady(nodes, n_blades, radius, end, speed, density).thrust)
+        float(solve_steady(nodes, n_blades, radius, end, speed, density, sections).thrust)
         for end in (low, high)
     ]
     raise TrimError(
@@ -179,6 +186,7 @@ def rotation_speed_by_interpolation(
     thrust_required: Scalar,
     low: Scalar,
     high: Scalar,
+    sections: ViscousSections | None = None,
 ) -> Array:
     """Rotation speed by the thesis' rule: thrust linear between the two bounds.
 
@@ -186,7 +194,7 @@ def rotation_speed_by_interpolation(
 
     Parameters
     ----------
-    nodes, n_blades, radius, speed, density, thrust_required
+    nodes, n_blades, radius, speed, density, thrust_required, sections
         As for `rotation_speed_for_thrust`.
     low, high : float
         The two rotation speeds at which the thrust is computed [rad/s].
@@ -198,7 +206,7 @@ def rotation_speed_by_interpolation(
     """
     # Mapped, so that the lattice is compiled once for both.
     at_low, at_high = jax.lax.map(
-        lambda end: solve_steady(nodes, n_blades, radius, end, speed, density).thrust,
+        lambda end: solve_steady(nodes, n_blades, radius, end, speed, density, sections).thrust,
         jnp.stack([low, high]),
     )
     return low + (high - low) * (thrust_required - at_low) / (at_high - at_low)
@@ -214,6 +222,7 @@ def solve_rotation_speed(
     thrust_required: Scalar,
     low: Scalar,
     high: Scalar,
+    sections: ViscousSections | None = None,
 ) -> tuple[Array, tuple[Array, Array]]:
     """Rotation speed for a thrust, and how much thrust is missing at either bound.
 
@@ -223,7 +232,7 @@ def solve_rotation_speed(
 
     Parameters
     ----------
-    nodes, n_blades, radius, speed, density, thrust_required
+    nodes, n_blades, radius, speed, density, thrust_required, sections
         As for `rotation_speed_for_thrust`.
     low, high : float
         Bounds [rad/s].
@@ -235,7 +244,7 @@ def solve_rotation_speed(
         at `low` and negative at `high` [rad/s], [N].
     """
     omega, missing, _ = _solve_trimmed(
-        nodes, n_blades, radius, speed, density, thrust_required, low, high
+        nodes, n_blades, radius, speed, density, thrust_required, low, high, sections
     )
     return omega, missing
 
@@ -250,6 +259,7 @@ def _solve_trimmed(
     thrust_required: Scalar,
     low: Scalar,
     high: Scalar,
+    sections: ViscousSections | None = None,
 ) -> tuple[Array, tuple[Array, Array], SteadySolution]:
     """Rotation speed, thrust missing at the bounds, and the loads."""
     # The rotation speed in here is that of no trial yet.
@@ -259,6 +269,7 @@ def _solve_trimmed(
         rotation_speed=jnp.asarray(low, float),
         speed=jnp.asarray(speed, float),
         density=jnp.asarray(density, float),
+        sections=sections,
     )
 
     def at_speed(params: _Params, omega: Array) -> tuple[Flow, Array]:
@@ -273,11 +284,14 @@ def _solve_trimmed(
     def missing(params: _Params, omega: Array, loads: LatticeLoads) -> Array:
         return params[1] - n_blades * loads.thrust
 
-    def solve(params: _Params) -> tuple[Array, tuple[Array, Array]]:
+    def solve(params: _Params) -> tuple[Array, LatticeLoads, tuple[Array, Array]]:
         _, required, (low, high) = params
-        return _bracketed_search(
-            lambda omega: missing(params, omega, loads(params, omega)), required, low, high
-        )
+
+        def trial(omega: Array) -> tuple[Array, LatticeLoads]:
+            blade = loads(params, omega)
+            return missing(params, omega, blade), blade
+
+        return _bracketed_search(trial, required, low, high)
 
     bounds = (jnp.asarray(low, float), jnp.asarray(high, float))
     params = (flow, jnp.asarray(thrust_required, float), bounds)
@@ -287,24 +301,26 @@ def _solve_trimmed(
 
 
 def _bracketed_search(
-    missing: Callable[[Array], Array], thrust: Scalar, low: Scalar, high: Scalar
-) -> tuple[Array, tuple[Array, Array]]:
-    """Root of the missing thrust, and its values at either bound, in three to six trials.
+    missing: Callable[[Array], tuple[Array, LatticeLoads]],
+    thrust: Scalar,
+    low: Scalar,
+    high: Scalar,
+) -> tuple[Array, LatticeLoads, tuple[Array, Array]]:
+    """Root of the missing thrust, the loads there and the thrust missing at either bound.
 
     Both bounds are evaluated first. Then CT, taken as a straight line in J through the last
-    two trials, gives the next (it nearly is one); where that leaves the bracket, bisect.
+    two trials, gives the next (it nearly is one); where that leaves the bracket, bisect. Three to
+    six trials.
     """
 
     def unfinished(state: Any) -> Array:
-        count, _, _, x, (x1, _), (x2, _), (at_low, at_high) = state
+        count, *_, (at_low, at_high), _, _, done = state
         bracketed = (count < 2) | ((at_low >= 0.0) & (at_high <= 0.0))
-        # A secant step leaves an error of about the product of the last two.
-        moved = (count < 3) | (jnp.abs((x - x1) * (x1 - x2)) > _TOLERANCE * x * x)
-        return (count < _MAX_EVALUATIONS) & bracketed & moved
+        return (count < _MAX_EVALUATIONS) & bracketed & ~done
 
     def step(state: Any) -> Any:
-        count, lo, hi, x, (x1, f1), _, (at_low, at_high) = state
-        f = missing(x)
+        count, lo, hi, x, (x1, f1), (at_low, at_high), _, last, _ = state
+        f, loads = missing(x)
         at_low = jnp.where(count == 0, f, at_low)
         at_high = jnp.where(count == 1, f, at_high)
         lo, hi = jnp.where(f >= 0.0, x, lo), jnp.where(f < 0.0, x, hi)
@@ -312,12 +328,18 @@ def _bracketed_search(
         inside = (trial > lo) & (trial < hi)
         following = jnp.where(inside | (f == 0.0), trial, 0.5 * (lo + hi))
         following = jnp.where(count == 0, high, following)
-        return count + 1, lo, hi, following, (x, f), (x1, f1), (at_low, at_high)
+        # A secant step leaves an error of about the product of the last two. Where the next trial
+        # will do, it is evaluated once more, for the loads there.
+        product = jnp.abs((following - x) * (x - x1))
+        close = (count > 1) & (product <= _TOLERANCE * following**2)
+        following = jnp.where(last, x, following)
+        return count + 1, lo, hi, following, (x, f), (at_low, at_high), loads, close, last
 
-    zero = jnp.zeros_like(low)
-    state: Any = (0, low, high, low, (zero, zero), (zero, zero), (zero, zero))
-    _, _, _, omega, _, _, ends = jax.lax.while_loop(unfinished, step, state)
-    return omega, ends
+    zero, no = jnp.zeros_like(low), jnp.asarray(False)
+    blank = empty(missing, low)[1]
+    start: Any = (0, low, high, low, (zero, zero), (zero, zero), blank, no, no)
+    _, _, _, omega, _, ends, loads, _, _ = jax.lax.while_loop(unfinished, step, start)
+    return omega, loads, ends
 
 
 def _where_linear_ct_gives(thrust: Scalar, x1: Array, t1: Array, x2: Array, t2: Array) -> Array:

@@ -4,12 +4,13 @@ Momentum theory gives the induced velocity w at the disk from the thrust,
 
     T = 2 rho A w (V + w)                                           (Glauert 1935, eq. I 1.13)
 
-and 2 w far downstream. In between the axial induced velocity follows that of the semi-infinite
-vortex cylinder on its axis, w (1 + s / sqrt(1 + s^2)) (McCormick 1967, eq. 4-48), with s the
-distance travelled in radii at the mean speed V + 1.5 w. The stream contracts by continuity.
-Limits: w is uniform over the disk, swirl and roll-up of the tip vortex are left out, and the edge
-of the stream, which moves at the mean of both sides, is carried as fast as the air inside: too fast
-in hover (docs/verification.md).
+and 2 w far downstream. Inside the stream the induced velocity grows from w to 2 w as on the axis of
+the semi-infinite vortex cylinder, w (1 + s / sqrt(1 + s^2)) (McCormick 1967, eq. 4-48), and the
+stream contracts by continuity, with s the distance travelled in radii. The vortices themselves lie
+on the edge of the stream and move at the mean of both sides: V + w far downstream, where the air
+outside is at rest, and so all along. Carried as fast as the air inside, the power of hover would
+fall below that of the ideal disk (docs/verification.md). Limits: w is uniform over the disk, swirl
+and roll-up of the tip vortex are left out.
 """
 
 from __future__ import annotations
@@ -106,13 +107,10 @@ def helical_wake(
     (n_filaments, n_blades, n_nodes, 3) array
         Nodes of the filaments, blade by blade [m].
     """
-    mean_speed = speed + 1.5 * induced_velocity
-    time = ages / rotation_speed
-    s = time * mean_speed / radius
-    root = jnp.sqrt(1.0 + s * s)
-    at_disk = speed + induced_velocity
-    axial = at_disk * time + induced_velocity * radius / mean_speed * (root - 1.0)
-    contraction = jnp.sqrt(at_disk / (at_disk + induced_velocity * s / root))
+    transport = speed + induced_velocity
+    axial = transport * ages / rotation_speed
+    s = axial / radius
+    contraction = jnp.sqrt(transport / (transport + induced_velocity * s / jnp.sqrt(1.0 + s * s)))
 
     r0 = jnp.hypot(trailing_nodes[:, 0], trailing_nodes[:, 1])
     psi0 = jnp.arctan2(trailing_nodes[:, 1], trailing_nodes[:, 0])

@@ -34,7 +34,9 @@ def _hermite_weights(nodes: jax.Array, x: jax.Array) -> jax.Array:
 
 def _cell(nodes: jax.Array, x: jax.Array) -> jax.Array:
     """Cell that holds x; the first or last one outside."""
-    return jnp.clip(jnp.searchsorted(nodes, x, side="right") - 1, 0, nodes.size - 2)
+    # Tables are short: comparing with every node compiles and runs faster than a search.
+    above = jnp.searchsorted(nodes, x, side="right", method="compare_all")
+    return jnp.clip(above - 1, 0, nodes.size - 2)
 
 
 def soft_clamp(nodes: jax.Array, x: jax.Array) -> jax.Array:

@@ -11,13 +11,14 @@ import numpy as np
 from propmdao.aerodynamics.polars.high_angle import ATTACHED_DEG, FloatArray
 from propmdao.geometry.airfoil import CHORD_FRACTION
 
-#: Critical amplification: blades pass through each other's wakes; the polars of small propellers
-#: are usually given for 6 to 7, a clean wind tunnel has 9 to 12.
-N_CRIT = 7.0
+#: Critical amplification of e^n transition, the same for every blade: moulded edges, and air that
+#: other blades have stirred. A clean wind tunnel has 9 to 12, a dirty one 4 to 8 (Drela, XFOIL user
+#: guide); studies/aerodynamic_validation.py shows what it changes.
+N_CRIT = 5.0
 #: Largest of NeuralFoil's networks.
 MODEL_SIZE = "xxxlarge"
 #: Reynolds numbers of the tables, four per decade.
-REYNOLDS: FloatArray = np.geomspace(1e4, 1e6, 9)
+REYNOLDS: FloatArray = np.geomspace(10**3.5, 1e6, 11)
 REYNOLDS.setflags(write=False)
 
 

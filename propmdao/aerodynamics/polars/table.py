@@ -57,6 +57,76 @@ class PolarTable:
         return self.values[:, 2]
 
 
+@record
+class SectionCurves:
+    """Polars of several sections, each at its own Reynolds and Mach number.
+
+    Attributes
+    ----------
+    alpha : (n_alpha,) array
+        As in `PolarTable`.
+    values : (n_sections, 3, n_alpha) array
+        Lift coefficient, natural logarithm of the drag coefficient, moment coefficient.
+    mach : (n_sections,) array or number
+        Mach numbers.
+    """
+
+    alpha: jax.Array
+    values: jax.Array
+    mach: jax.Array | float
+
+
+def section_curves(
+    table: PolarTable, re: jax.Array, mach: jax.Array | float = 0.0
+) -> SectionCurves:
+    """Polars at the Reynolds and Mach number of each section.
+
+    Parameters
+    ----------
+    table : PolarTable
+        Polars of n sections.
+    re : (n,) array
+        Reynolds number on the chord, positive; held at the ends of the table (`warn_outside`
+        tells the user).
+    mach : (n,) array or number
+        Mach number.
+
+    Returns
+    -------
+    SectionCurves
+        For `curve_coefficients`, which is cheap at any number of angles.
+    """
+    index, weight = clamped_stencil(table.log_re, jnp.log(re))
+    row = jnp.arange(table.values.shape[0])[:, None]
+    near = table.values[row, :, index]
+    return SectionCurves(table.alpha, jnp.einsum("nrca,nr->nca", near, weight), mach)
+
+
+def curve_coefficients(
+    curves: SectionCurves, alpha: jax.Array
+) -> tuple[jax.Array, jax.Array, jax.Array]:
+    """Lift, drag and moment of each section at its own angle.
+
+    Parameters
+    ----------
+    curves : SectionCurves
+        Polars of n sections.
+    alpha : (n,) array
+        Angle of attack of each section, any angle [rad].
+
+    Returns
+    -------
+    cl, cd, cm : (n,) arrays
+        Coefficients, C1 in the angle; cm about the quarter chord, nose up.
+    """
+    index, weight = periodic_stencil(curves.alpha, alpha)
+    row = jnp.arange(curves.values.shape[0])[:, None]
+    near = curves.values[row, :, index]
+    cl, log_cd, cm = jnp.einsum("nac,na->cn", near, weight)
+    factor = prandtl_glauert(curves.mach, alpha)
+    return factor * cl, jnp.exp(log_cd), factor * cm
+
+
 @jax.jit
 def section_coefficients(
     table: PolarTable, alpha: jax.Array, re: jax.Array, mach: jax.Array | float = 0.0
@@ -69,24 +139,16 @@ def section_coefficients(
         Polars of n sections.
     alpha : (n,) array
         Angle of attack of each section, any angle [rad].
-    re : (n,) array
-        Reynolds number on the chord, positive; held at the ends of the table (`warn_outside`
-        tells the user).
-    mach : (n,) array or number
-        Mach number; raises lift and moment by `prandtl_glauert`, leaves drag.
+    re, mach : (n,) array, (n,) array or number
+        As `section_curves` takes them; the Mach number raises lift and moment by
+        `prandtl_glauert` and leaves drag.
 
     Returns
     -------
     cl, cd, cm : (n,) arrays
         Coefficients, C1 in every argument; cm about the quarter chord, nose up.
     """
-    at_re, re_weight = clamped_stencil(table.log_re, jnp.log(re))
-    at_alpha, alpha_weight = periodic_stencil(table.alpha, alpha)
-    row = jnp.arange(table.values.shape[0])[:, None, None]
-    near = table.values[row, :, at_re[:, :, None], at_alpha[:, None, :]]
-    cl, log_cd, cm = jnp.einsum("nrac,nr,na->cn", near, re_weight, alpha_weight)
-    factor = prandtl_glauert(mach, alpha)
-    return factor * cl, jnp.exp(log_cd), factor * cm
+    return curve_coefficients(section_curves(table, re, mach), alpha)
 
 
 def warn_outside(
