@@ -221,6 +221,46 @@ class TestPressure:
         assert p.loading[1].tolist() == [201, 211, 221]
         assert p.position[1, 2].tolist() == [21, 121, 221]
 
+    @pytest.mark.parametrize("order", ["<", ">"])
+    def test_binary_files_hold_the_same(self, stem, order):
+        text = read_pressure(stem)
+        for ending, n_sizes in ((".fn", 4), (".x", 3)):
+            path = stem.with_suffix(ending)
+            words = path.read_text().split()
+            sizes = np.array(words[:n_sizes], f"{order}i4")
+            path.write_bytes(sizes.tobytes() + np.array(words[n_sizes:], f"{order}f4").tobytes())
+        assert_same(read_pressure(stem), text)
+        path.write_bytes(path.read_bytes()[:-1])
+        with pytest.raises(WopwopFileError, match=r"p.x: truncated: 83 bytes"):
+            read_pressure(stem)
+
+    TEC = (
+        'TITLE="PSU-WOPWOP"\nVARIABLES="Observer Time (s)","Thickness Acoustic Pressure (Pa)",'
+        '"Loading Acoustic Pressure (Pa)","Total Acoustic Pressure (Pa)"\nTEXT X=2,T="mic"\n\n'
+    )
+
+    def test_a_single_observer(self, tmp_path):
+        (tmp_path / "p.tec").write_text(self.TEC + " 0.0 1.0 2.0 3.0\n  1E-1 -1. .5 -.5\n")
+        p = read_pressure(tmp_path / "p.tec")
+        np.testing.assert_array_equal(p.time, [[0, 0.1]])
+        np.testing.assert_array_equal(p.total, [[3, -0.5]])
+        assert p.position.shape == (1, 2, 3) and np.isnan(p.position).all()
+
+    @pytest.mark.parametrize(
+        ("content", "message"),
+        [
+            ("hello", "it names no VARIABLES"),
+            (TEC + "1 2 3\n", "rows must have 4 numbers"),
+            (TEC, "rows must have 4 numbers"),
+            (TEC + "1 2 3 x\n", "not a Tecplot file"),
+            (TEC.replace("Loading", "Other") + "1 2 3 4\n", "no 'loading' among Observer Time"),
+        ],
+    )
+    def test_broken_single_observers(self, tmp_path, content, message):
+        (tmp_path / "p.tec").write_text(content)
+        with pytest.raises(WopwopFileError, match=message):
+            read_pressure(tmp_path / "p.tec")
+
     @pytest.mark.parametrize(
         ("ending", "content", "message"),
         [
