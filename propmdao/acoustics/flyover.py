@@ -100,7 +100,7 @@ def flyover_histories(
         passing = (np.asarray(observers.velocity, float) - velocity) @ to_hub
         alone = dataclasses.replace(rotor, mount=())
         fundamental = symmetry(rotor.azimuths) * rotor.rotation_speed
-        n_harmonics = int(max_frequency_hz * 2 * np.pi / abs(fundamental))
+        n_harmonics = int(max_frequency_hz * 2 * np.pi / abs(fundamental) * (1 + 1e-12))
         if n_harmonics < 1:
             raise ValueError(
                 f"max_frequency_hz must reach the first tone of {rotor.name}, "

@@ -15,9 +15,10 @@ from propmdao.acoustics.rotors import segments
 from propmdao.wopwop.binary import WopwopFileError
 from propmdao.wopwop.cases import Case, Container, ObserverGrid, read_cases
 from propmdao.wopwop.geometry_file import read_geometry
-from propmdao.wopwop.loading_file import read_loading
+from propmdao.wopwop.loading_file import LoadingFile, read_loading
 from propmdao.wopwop.pressure_file import PressureHistories
 from propmdao.wopwop.sources import is_line, loading_sources, source_points, thickness_sources
+from propmdao.wopwop.zones import Zone
 
 
 @dataclass(frozen=True)
@@ -93,41 +94,51 @@ def _container(
             f"{container.loading}: made for {data.n_geometry_zones} zones; "
             f"{container.geometry} has {len(geometry.zones)}"
         )
-    motion, c = container.motion, case.sound_speed
     heard = np.zeros((2, len(observers.position), times.size))
     for number, zone in enumerate(geometry.zones, start=1):
-        radiates = case.thickness and not is_line(zone) and -number not in loads
+        surface = None if is_line(zone) or -number in loads or not case.thickness else zone
         load = loads.get(number, loads.get(-number)) if case.loading else None
-        if not radiates and load is None:
+        if surface is None and load is None:
             continue
         try:
-            require_outside(motion, source_points(zone), observers, times, "the sources")
-            changing = any(q is not None and q.keys is not None for q in (zone, load))
-            grounded = data is not None and data.frame == 1
-            n_unsteady = zone.values[0, 0].size if changing or grounded else 0
-            zone_heard = np.zeros_like(heard)
-            for part in segments(times.size, n_unsteady):
-                t = times[part]
-                multiple = max(128, t.size // 4)
-                tau = source_times(
-                    motion, source_points(zone), observers, t, c, container.step, multiple
-                )
-                if radiates:
-                    panels = thickness_sources(zone, tau, container.key_offset)
-                    zone_heard[0, :, part] = thickness_history(
-                        panels, motion, tau, observers, t, case.density, c
-                    )
-                if load is not None and data is not None:
-                    forces = loading_sources(zone, load, data, tau, motion, container.key_offset)
-                    zone_heard[1, :, part] = loading_history(forces, motion, tau, observers, t, c)
-            heard += zone_heard
-        except WopwopFileError:
-            raise
+            heard += _zone(case, container, zone, surface, load, data, observers, times)
         except ValueError as error:
             raise WopwopFileError(
                 f"{container.geometry}: zone {number} {zone.name!r}: {error}"
             ) from None
     return heard[0], heard[1]
+
+
+def _zone(
+    case: Case,
+    container: Container,
+    zone: Zone,
+    surface: Zone | None,
+    load: Zone | None,
+    file: LoadingFile | None,
+    observers: Observers,
+    times: NDArray[np.float64],
+) -> NDArray[np.float64]:
+    """Thickness noise of a zone if it is a surface, loading noise if it has loads."""
+    motion, c, offset = container.motion, case.sound_speed, container.key_offset
+    points = source_points(zone)
+    require_outside(motion, points, observers, times, "the sources")
+    changing = any(q is not None and q.keys is not None for q in (zone, load))
+    turned = file is not None and file.frame == 1
+    heard = np.zeros((2, len(observers.position), times.size))
+    for part in segments(times.size, zone.values[0, 0].size if changing or turned else 0):
+        t = times[part]
+        multiple = max(128, t.size // 4)
+        tau = source_times(motion, points, observers, t, c, container.step, multiple)
+        if surface is not None:
+            panels = thickness_sources(surface, tau, offset)
+            heard[0, :, part] = thickness_history(
+                panels, motion, tau, observers, t, case.density, c
+            )
+        if load is not None and file is not None:
+            forces = loading_sources(zone, load, file, tau, motion, offset)
+            heard[1, :, part] = loading_history(forces, motion, tau, observers, t, c)
+    return heard
 
 
 def _filtered(pressure: NDArray[np.float64], grid: ObserverGrid) -> NDArray[np.float64]:
