@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import csv
 import dataclasses
+import subprocess
 import sys
+import time
 import types
 from pathlib import Path
 from typing import Any
@@ -238,6 +240,26 @@ def test_two_workers_make_the_same_table(propeller: Propeller, tmp_path: Path) -
                 assert other[name] == cell
             else:
                 assert float(other[name]) == pytest.approx(float(cell), rel=1e-9)
+
+
+@pytest.mark.slow
+def test_a_killed_sweep_resumes_to_the_same_table(tmp_path: Path) -> None:
+    path = tmp_path / "sweep.csv"
+    sweep_of = [sys.executable, "-m", "propmdao.cli", "sweep", PROPELLER, "--out", str(path)]
+    arguments = [*sweep_of, "--rpm", "3000:6000:100", "--speed", "8"]
+    with subprocess.Popen(arguments, stdout=subprocess.DEVNULL) as process:
+        deadline = time.monotonic() + 120.0
+        while not path.exists() or path.read_bytes().count(b"\n") < 4:
+            assert process.poll() is None and time.monotonic() < deadline
+            time.sleep(0.01)
+        process.kill()
+    assert 4 <= path.read_bytes().count(b"\n") < 32
+    again = subprocess.run(arguments, capture_output=True, text=True, timeout=300, check=True)
+    assert again.stdout.startswith("points: 31, ") and "31 new" not in again.stdout
+    resumed = path.read_bytes()
+    path.unlink()
+    subprocess.run(arguments, capture_output=True, timeout=300, check=True)
+    assert path.read_bytes() == resumed
 
 
 # --- the command --------------------------------------------------------------------------------

@@ -3,6 +3,8 @@
 import functools
 import importlib
 import os
+import subprocess
+import sys
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
@@ -157,3 +159,17 @@ def test_workers_compute_on_one_thread():
         assert executor.submit(os.getenv, "PJRT_NPROC").result() == "1"  # XLA's
         assert executor.submit(os.getenv, "PROPMDAO_TEST").result() == "set"
     assert set(n_threads) == {1}
+
+
+@pytest.mark.slow
+def test_a_script_that_workers_cannot_import_ends_in_an_error_that_says_so(models, tmp_path):
+    """Without a guard every worker would start workers when it imports the script."""
+    script = tmp_path / "unguarded.py"
+    script.write_text("import worker_models\nworker_models.problem(n_workers=2).run_driver()\n")
+    path = {"PYTHONPATH": os.pathsep.join(sys.path), "OPENMDAO_WORKDIR": str(tmp_path)}
+    result = subprocess.run(
+        [sys.executable, str(script)], env=os.environ | path, capture_output=True, timeout=120
+    )
+    assert result.returncode == 1
+    assert b"WorkerLostError: a worker ended without a result" in result.stderr
+    assert b"put that under if __name__ == '__main__':" in result.stderr
