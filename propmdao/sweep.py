@@ -7,6 +7,7 @@ import dataclasses
 import itertools
 import json
 import os
+import warnings
 import zlib
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import ExitStack, closing
@@ -34,6 +35,7 @@ VARIABLES: dict[str, float | None] = {
     "n_blades": None,
 }
 _RESULTS = "rpm J thrust torque shaft_power CT CQ CP eta converged".split()
+_WARNINGS = "warnings"
 _LEVELS = "spl_bpf_db oaspl_db oaspl_thickness_db oaspl_loading_db oaspl_dba".split()
 
 
@@ -126,6 +128,7 @@ def sweep(
     path: str | os.PathLike[str],
     *,
     observers: Sequence[tuple[float, float]] = (),
+    viscous: bool = True,
     n_workers: int = 1,
 ) -> tuple[int, list[str]]:
     """Analyse a propeller at many points into a table.
@@ -144,10 +147,12 @@ def sweep(
     path : path
         Table to make or go on with, a row per point, its variables with ``propeller`` and the
         checksum ``blade`` of its description in front of what `propmdao.analysis` gives, levels
-        as ``oaspl_db@1.905m-45deg``. CSV, or with the ending ``.parquet`` a Parquet file that is
-        written at the end beside the CSV file of the same name.
+        as ``oaspl_db@1.905m-45deg``, and what it warns of. CSV, or with the ending ``.parquet`` a
+        Parquet file that is written at the end beside the CSV file of the same name.
     observers : sequence of (radius, elevation_deg)
         As `propmdao.analysis.analyze` takes them.
+    viscous : bool
+        Hold the lattice to the polars of the sections; False for inviscid flow.
     n_workers : int
         Processes that analyse; 1: only this one.
 
@@ -170,14 +175,14 @@ def sweep(
         raise ValueError(f"a table ends in .csv or .parquet; '{path}' does not")
     if path.suffix == ".parquet":
         require_pyarrow()  # before the work, not after
-    complete = [_complete(propeller, point) for point in points]
+    complete = [{**_complete(propeller, point), "viscous": viscous} for point in points]
     drives = {"rpm" if "rpm" in point else "thrust_required" for point in complete}
     if len(drives) != 1:
         raise ValueError("a sweep needs points, and in all of them rpm or in all thrust_required")
-    point_columns = ["propeller", "blade", *(name for name in VARIABLES if name in complete[0])]
+    point_columns = list(complete[0])
     heard = [_suffix(*observer) for observer in observers]
     results = [name for name in _RESULTS if name not in point_columns]
-    results += [name + suffix for suffix in heard for name in _LEVELS]
+    results += [name + suffix for suffix in heard for name in _LEVELS] + [_WARNINGS]
     table = ResultTable(path.with_suffix(".csv"), point_columns, results)
     new = [point for point in complete if point not in table]
     analysed = partial(_analysed, propeller, list(observers))
@@ -233,15 +238,18 @@ def _analysed(
             n_blades=point["n_blades"],
             c_over_R=propeller.c_over_R * point["chord_factor"],
         )
-        results = analyze(
-            blade,
-            rpm=point.get("rpm"),
-            thrust=point.get("thrust_required"),
-            speed=point["speed"],
-            density=point["rho"],
-            twist_offset_deg=point["twist_offset_deg"],
-            observers=observers,
-        ).to_dict()
+        with warnings.catch_warnings(record=True) as caught:
+            warnings.simplefilter("always")
+            results = analyze(
+                blade,
+                rpm=point.get("rpm"),
+                thrust=point.get("thrust_required"),
+                speed=point["speed"],
+                density=point["rho"],
+                twist_offset_deg=point["twist_offset_deg"],
+                viscous=point["viscous"],
+                observers=observers,
+            ).to_dict()
     except ValueError as error:
         return {}, str(error)
     except Exception as error:  # a survey of thousands of points does not end at one of them
@@ -251,6 +259,7 @@ def _analysed(
         for heard in results.pop("observers")
         for name in _LEVELS
     }
+    results[_WARNINGS] = "; ".join(" ".join(str(warning.message).split()) for warning in caught)
     unconverged = "" if results["converged"] else "the solution has not converged"
     return results | levels, results.get("failure") or unconverged
 

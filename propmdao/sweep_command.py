@@ -100,6 +100,9 @@ def add_sweep(
         " negative below it (wake side); may be repeated for other radii",
     )
     command.add_argument(
+        "--inviscid", action="store_true", help="without the polars of the sections"
+    )
+    command.add_argument(
         "--workers", type=int, default=1, metavar="N", help="processes that analyse, default 1"
     )
     command.add_argument(
@@ -124,7 +127,12 @@ def _sweep(options: argparse.Namespace) -> None:
     propeller = load_propeller(options.propeller)
     try:
         n_new, failures = sweep(
-            propeller, points, options.out, observers=observers, n_workers=options.workers
+            propeller,
+            points,
+            options.out,
+            observers=observers,
+            viscous=not options.inviscid,
+            n_workers=options.workers,
         )
     except ModuleNotFoundError as error:
         raise ValueError(str(error)) from error

@@ -8,6 +8,7 @@ import subprocess
 import sys
 import time
 import types
+import warnings
 from pathlib import Path
 from typing import Any
 
@@ -29,6 +30,8 @@ class Analyzer:
 
     def analyze(self, propeller: Propeller, **asked: Any) -> Analyzer:
         self.calls.append((propeller, asked))
+        if asked["speed"] == 11.0:
+            warnings.warn("Reynolds numbers below\nthe tables", stacklevel=2)
         if asked["speed"] == 13.0:
             raise ValueError("thrust 1 N is out of reach")
         if asked["speed"] == 14.0:
@@ -134,6 +137,24 @@ def test_a_point_is_passed_on_and_its_results_are_a_row(
     assert row["propeller"] == propeller.name and row["n_blades"] == "3"
     assert float(row["thrust"]) == 9e6 and row["converged"] == "True"
     assert row["oaspl_db@1.905m-45deg"] == row["spl_bpf_db@2m+0deg"] == "50.0"
+    assert asked["viscous"] is True and row["viscous"] == "True"
+
+
+def test_warnings_stand_in_the_row_that_they_are_about(
+    analyzer: Analyzer, propeller: Propeller, tmp_path: Path
+) -> None:
+    sweep(propeller, grid({"rpm": [3000.0], "speed": [11.0, 12.0]}), tmp_path / "sweep.csv")
+    warned = [row["warnings"] for row in rows_of(tmp_path / "sweep.csv")]
+    assert warned == ["Reynolds numbers below the tables", ""]
+
+
+def test_inviscid_points_are_other_points(
+    analyzer: Analyzer, propeller: Propeller, tmp_path: Path
+) -> None:
+    arguments = ["--rpm", "3000", "--out", str(tmp_path / "sweep.csv")]
+    assert command(*arguments) == command(*arguments, "--inviscid") == 0
+    assert asked_for(analyzer, "viscous") == [(True,), (False,)]
+    assert len(rows_of(tmp_path / "sweep.csv")) == 2
 
 
 def test_failed_points_are_rows_with_the_reason(
@@ -236,7 +257,10 @@ def test_two_workers_make_the_same_table(propeller: Propeller, tmp_path: Path) -
     for one, other in zip(alone, shared, strict=True):
         for name, cell in one.items():
             # threads sum in another order
-            if name in ("propeller", "blade", "status", "reason", "converged") or not cell:
+            if name in ("propeller", "blade", "status", "reason", "warnings") or cell in (
+                "",
+                "True",
+            ):
                 assert other[name] == cell
             else:
                 assert float(other[name]) == pytest.approx(float(cell), rel=1e-9)
@@ -361,7 +385,9 @@ def test_help_explains_every_option(capsys: pytest.CaptureFixture[str]) -> None:
         main(["sweep", "--help"])
     assert exit_.value.code == 0
     text = capsys.readouterr().out
-    for option in ("--rpm --thrust --speed --rho --twist-offset --chord-factor --diameter --blades"
-                   " --points --samples --seed --arc --workers --out").split():  # fmt: skip
+    for option in (
+        "--rpm --thrust --speed --rho --twist-offset --chord-factor --diameter --blades"
+        " --points --samples --seed --arc --inviscid --workers --out"
+    ).split():
         assert option in text
     assert "examples:" in text and "resumes" in text
