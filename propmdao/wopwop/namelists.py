@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import contextlib
 import io
+import math
 import warnings
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
@@ -65,7 +67,7 @@ class Group:
     def number(self, key: str, default: float | None = None) -> float:
         """Return a number, or the default; refuse the file if there is neither."""
         value = self.values.get(key, default)
-        if isinstance(value, bool) or not isinstance(value, int | float):
+        if value is None or (key in self.values and not _is_number(value)):
             raise self.error(f"{key} must be a number; " + _found(value))
         return float(value)
 
@@ -79,8 +81,7 @@ class Group:
     def vector(self, key: str) -> tuple[float, float, float]:
         """Return three numbers, zeros if they are not given."""
         value = self.values.get(key, [0.0, 0.0, 0.0])
-        numbers = isinstance(value, list) and all(isinstance(x, int | float) for x in value)
-        if not numbers or len(value) != 3:
+        if not isinstance(value, list) or not all(map(_is_number, value)) or len(value) != 3:
             raise self.error(f"{key} must be three numbers; " + _found(value))
         return float(value[0]), float(value[1]), float(value[2])
 
@@ -116,7 +117,8 @@ def read_namelists(path: str | Path) -> list[Group]:
     except OSError as error:
         raise WopwopFileError(f"{path}: {error.strerror or error}") from None
     try:
-        parsed = f90nml.reads(text)
+        with contextlib.redirect_stdout(io.StringIO()):  # it prints its tables on broken quotes
+            parsed = f90nml.reads(text)
     except Exception as error:  # the parser fails on foreign text in any way it likes
         reason = " ".join(str(error).split()) or type(error).__name__
         raise WopwopFileError(f"{path}: not a Fortran namelist file ({reason})") from None
@@ -146,6 +148,10 @@ def write_namelists(path: str | Path, groups: Iterable[tuple[str, Mapping[str, A
     for name, values in groups:
         f90nml.Namelist({name: dict(values)}).write(out)
     Path(path).write_text(out.getvalue(), encoding="latin-1")
+
+
+def _is_number(value: Any) -> bool:
+    return isinstance(value, int | float) and not isinstance(value, bool) and math.isfinite(value)
 
 
 def _found(value: Any) -> str:

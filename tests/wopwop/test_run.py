@@ -142,6 +142,7 @@ def test_a_case_that_is_wholly_understood_warns_of_nothing(make_case):
     [
         ({"EnvironmentConstants": {"c": -1.0}}, "rho and c must be positive"),
         ({"EnvironmentConstants": {"rho": "air"}}, "rho must be a number; it is 'air'"),
+        ({"ObserverIn": {"xMin": float("nan")}}, "xmin must be a number; it is nan"),
         ({"EnvironmentIn": {"nbSourceContainers": 2}}, "&containerin is missing"),
         ({"EnvironmentIn": {"nbObserverContainers": 2}}, "&observerin expected here"),
         ({"ObserverIn": {"nt": 1}}, "nt must be 2 or more"),
@@ -164,11 +165,20 @@ def test_bad_cases_are_one_clear_line(make_case, changes, message):
     assert "\n" not in str(caught.value)
 
 
-@pytest.mark.parametrize("text", ["", "solid blade\n", "&casename\n caseNameFile = 'x.nam'"])
-def test_foreign_namelists(tmp_path, text):
+@pytest.mark.parametrize(
+    "text",
+    [
+        "",
+        "solid blade\n",
+        "&casename\n caseNameFile = 'x.nam'",
+        "&casename\n caseNameFile = 'x\n/\n",
+    ],
+)
+def test_foreign_namelists(tmp_path, text, capsys):
     (tmp_path / "cases.nam").write_text(text)
     with pytest.raises(WopwopFileError, match=r"cases.nam: not a Fortran namelist file"):
         run_case(tmp_path)
+    assert capsys.readouterr().out == ""
 
 
 def test_missing_files(tmp_path, make_case):
