@@ -102,6 +102,8 @@ def source_times(
     step = float(clock[1] - clock[0]) if step is None else step
     if not step > 0:
         raise ValueError(f"step of the source times must be positive [s]; got {step:g}")
+    # A step of the record's length would be interpolated from what is heard long before and after.
+    step = min(step, float(clock[-1] - clock[0]))
     center = 0.5 * (x.min(axis=0) + x.max(axis=0))
     # Every point is heard within radius / c of the centre, whatever the motion.
     margin = float(np.linalg.norm(x - center, axis=1).max()) / sound_speed

@@ -183,6 +183,13 @@ def test_source_steps_of_any_length_meet_the_observers_clock():
     assert np.isfinite(coarse).all()
 
 
+def test_source_steps_are_not_longer_than_the_record():
+    t = np.linspace(0, 0.1, 65)
+    tau = source_times((), REST, at((34.0, 0, 0)), t, C, step=1e30)
+    assert np.diff(tau).max() <= 0.1
+    assert tau[0] <= -0.1 - 0.1 and tau[-1] >= 0.1
+
+
 def test_what_no_source_time_reaches_is_not_a_number():
     loads = PointLoads(jnp.zeros((1, 3)), jnp.ones((1, 3)))
     t = np.linspace(0.0, 1.0, 101)
