@@ -5,7 +5,6 @@ from __future__ import annotations
 import contextlib
 import os
 from collections.abc import Generator
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -14,9 +13,10 @@ from openmdao.core.driver import RecordingDebugging
 from tqdm import tqdm
 
 from propmdao.components.candidate import Array
+from propmdao.components.checkpoint import SAME_MODEL
 from propmdao.components.model_pool import ModelPool, model_pool, put_outputs
 from propmdao.components.search_options import declare_worker_options
-from propmdao.result_table import ResultTable, Value, require_pyarrow
+from propmdao.result_table import ResultTable, Value, table_files
 
 Sample = dict[str, dict[str, Any]]
 
@@ -31,7 +31,7 @@ class SweepDriver(om.AnalysisDriver):
       of arrays are columns ``name[0]``, ``name[1]`` and so on, in the units of the sample and of
       the response.
     - Samples that the table has are not run again, so a sweep that was interrupted or killed goes
-      on, and one with more samples adds these.
+      on, and one with more samples adds these. One of them is, to see that the model is the same.
     - Every run starts from the output values that the model held when the driver started, so that
       no row depends on the one before it; and the samples may run on workers.
 
@@ -80,26 +80,22 @@ class SweepDriver(om.AnalysisDriver):
         """
         self.result.reset()
         self.iter_count = 0
-        path = Path(self._problem().get_outputs_dir() / self.options["table"])
-        if path.suffix == ".parquet":
-            require_pyarrow()  # before the work, not after
+        csv_file, parquet_file = table_files(
+            self._problem().get_outputs_dir() / self.options["table"]
+        )
         samples = self._checked_samples()
         points = [_point(sample) for sample in samples]
-        table = ResultTable(path.with_suffix(".csv"), list(points[0]), list(self._results()))
-        new = [
-            (sample, point)
-            for sample, point in zip(samples, points, strict=True)
-            if point not in table
-        ]
-        workers = {
-            name: self.options[name] for name in ("n_workers", "executor", "problem_factory")
-        }
+        table = ResultTable(csv_file, list(points[0]), list(self._results()))
+        self._initial = self._outputs().asarray(copy=True)
+        self._require_same_model(table, samples, points)
+        missing = table.missing(points)
+        workers = [self.options[name] for name in ("n_workers", "executor", "problem_factory")]
         with (
-            model_pool(self._problem().model, **workers) as pool,
-            contextlib.closing(self._runs([sample for sample, _ in new], pool)) as reasons,
+            model_pool(self._problem().model, *workers) as pool,
+            contextlib.closing(self._runs([samples[place] for place in missing], pool)) as reasons,
         ):
             silent = None if self.options["progress"] else True
-            for _, point in tqdm(new, desc=self._name, unit="sample", disable=silent):
+            for place in tqdm(missing, desc=self._name, unit="sample", disable=silent):
                 self._metadata = {"success": 0, "msg": "not finished"}  # of an interrupted case
                 with RecordingDebugging(self._get_name(), self.iter_count, self):
                     reason = next(reasons)
@@ -109,9 +105,9 @@ class SweepDriver(om.AnalysisDriver):
                         reason = f"{', '.join(nans)} is nan" if nans else ""
                     self._metadata = {"success": int(not reason), "msg": reason}
                 self.iter_count += 1
-                table.add(point, {} if reason else results, reason)
-        if path.suffix == ".parquet":
-            table.write_parquet(path)
+                table.add(points[place], {} if reason else results, reason)
+        if parquet_file is not None:
+            table.write_parquet(parquet_file)
         self.failures = table.failures(points)
         return len(self.failures) == len(points)
 
@@ -138,6 +134,26 @@ class SweepDriver(om.AnalysisDriver):
             raise ValueError(f"{self.msginfo}: there are no samples; a generator gives them once")
         return samples
 
+    def _require_same_model(
+        self, table: ResultTable, samples: list[Sample], points: list[dict[str, Value]]
+    ) -> None:
+        """Run a sample that the table has: rows of another model are not gone on with."""
+        for sample, point in zip(samples, points, strict=True):
+            if point not in table or table.row(point)["status"] != "ok":
+                continue
+            next(self._runs([sample], None))
+            for name, now in self._results().items():
+                then = float(table.row(point)[name])
+                if not np.isclose(now, then, rtol=SAME_MODEL, atol=0.0):
+                    raise ValueError(
+                        f"'{table.path}' is of another model: at {point} {name} was {then:.10g}"
+                        f" and is {now:.10g}; name another file, or delete it to start anew"
+                    )
+            return
+
+    def _outputs(self) -> Any:
+        return self._problem().model.get_nonlinear_vectors()[1]
+
     def _results(self) -> dict[str, float]:
         """Responses by column as the model holds them."""
         values = {
@@ -150,12 +166,10 @@ class SweepDriver(om.AnalysisDriver):
 
     def _runs(self, samples: list[Sample], pool: ModelPool | None) -> Generator[str, None, None]:
         """Run samples and yield why they failed; the model is left as each of them leaves it."""
-        model = self._problem().model
-        outputs = model.get_nonlinear_vectors()[1]
-        initial = outputs.asarray(copy=True)
+        model, outputs = self._problem().model, self._outputs()
 
         def start(sample: Sample) -> Array:
-            outputs.set_val(initial)
+            outputs.set_val(self._initial)
             for name, meta in sample.items():
                 model.set_val(name, meta["val"], meta.get("units"), meta.get("indices"))
             values: Array = outputs.asarray(copy=True)

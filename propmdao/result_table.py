@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 import csv
-import importlib
+import importlib.util
 import io
 import os
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import Any
 
 Value = float | int | str | bool
 STATUS, REASON = "status", "reason"
@@ -58,6 +57,15 @@ class ResultTable:
         """Return the number of rows."""
         return len(self._rows)
 
+    def missing(self, points: Sequence[Mapping[str, Value]]) -> list[int]:
+        """Places of those of the points that have no row, each point once."""
+        places = {self._key(point): place for place, point in reversed([*enumerate(points)])}
+        return sorted(place for key, place in places.items() if key not in self._rows)
+
+    def row(self, point: Mapping[str, Value]) -> dict[str, str]:
+        """Return the cells of a point's row by column."""
+        return dict(zip(self._columns, self._rows[self._key(point)], strict=True))
+
     def add(
         self, point: Mapping[str, Value], results: Mapping[str, Value], reason: str = ""
     ) -> None:
@@ -92,17 +100,13 @@ class ResultTable:
         ----------
         path : path
             File to write or replace.
-
-        Raises
-        ------
-        ModuleNotFoundError
-            Without pyarrow, which is an extra.
         """
-        pyarrow = require_pyarrow()
+        # An extra, and without type information.
+        pyarrow, parquet = map(importlib.import_module, ("pyarrow", "pyarrow.parquet"))
         columns = {}
         for name, *cells in zip(self._columns, *self._rows.values(), strict=True):
             columns[name] = cells if name in (STATUS, REASON) else _typed(cells)
-        pyarrow.parquet.write_table(pyarrow.table(columns), path)
+        parquet.write_table(pyarrow.table(columns), path)
 
     def _key(self, point: Mapping[str, Value]) -> tuple[str, ...]:
         return tuple(_text(point[name]) for name in self._point_columns)
@@ -131,26 +135,34 @@ class ResultTable:
             os.truncate(self.path, len(whole))
 
 
-def require_pyarrow() -> Any:
-    """Import pyarrow, or say how to get it.
+def table_files(path: str | os.PathLike[str]) -> tuple[Path, Path | None]:
+    """Files of a table that a user names.
+
+    Parameters
+    ----------
+    path : path
+        With the ending .csv, or .parquet for a Parquet file beside the CSV file of the same name.
 
     Returns
     -------
-    module
-        pyarrow, with its Parquet part.
+    csv_file : pathlib.Path
+        File that grows.
+    parquet_file : pathlib.Path or None
+        File that is to be written at the end, if one is asked for.
 
     Raises
     ------
-    ModuleNotFoundError
-        When it is not installed.
+    ValueError
+        When the ending is another one, or pyarrow, an extra, is not installed for the second.
     """
-    try:
-        importlib.import_module("pyarrow.parquet")
-    except ModuleNotFoundError as error:
-        raise ModuleNotFoundError(
-            "Parquet files need pyarrow: pip install 'propmdao[parquet]'", name=error.name
-        ) from None
-    return importlib.import_module("pyarrow")
+    path = Path(path)
+    if path.suffix == ".csv":
+        return path, None
+    if path.suffix != ".parquet":
+        raise ValueError(f"a table ends in .csv or .parquet; '{path}' does not")
+    if importlib.util.find_spec("pyarrow") is None:  # before the work, not after
+        raise ValueError("Parquet files need pyarrow: pip install 'propmdao[parquet]'")
+    return path.with_suffix(".csv"), path
 
 
 def _differences(there: list[str], here: list[str]) -> str:

@@ -12,14 +12,13 @@ import zlib
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import ExitStack, closing
 from functools import partial
-from pathlib import Path
 from typing import Any
 
 from scipy.stats import qmc
 from tqdm import tqdm
 
 from propmdao.propeller import Propeller
-from propmdao.result_table import ResultTable, require_pyarrow
+from propmdao.result_table import ResultTable, table_files
 from propmdao.worker_processes import results_in_order, start_workers
 
 Point = dict[str, float]
@@ -170,11 +169,7 @@ def sweep(
     WorkerLostError
         When a worker dies; the rows so far are in the table.
     """
-    path = Path(path)
-    if path.suffix not in (".csv", ".parquet"):
-        raise ValueError(f"a table ends in .csv or .parquet; '{path}' does not")
-    if path.suffix == ".parquet":
-        require_pyarrow()  # before the work, not after
+    csv_file, parquet_file = table_files(path)
     complete = [{**_complete(propeller, point), "viscous": viscous} for point in points]
     drives = {"rpm" if "rpm" in point else "thrust_required" for point in complete}
     if len(drives) != 1:
@@ -183,8 +178,8 @@ def sweep(
     heard = [_suffix(*observer) for observer in observers]
     results = [name for name in _RESULTS if name not in point_columns]
     results += [name + suffix for suffix in heard for name in _LEVELS] + [_WARNINGS]
-    table = ResultTable(path.with_suffix(".csv"), point_columns, results)
-    new = [point for point in complete if point not in table]
+    table = ResultTable(csv_file, point_columns, results)
+    new = [complete[place] for place in table.missing(complete)]
     analysed = partial(_analysed, propeller, list(observers))
     with ExitStack() as stack:
         rows: Iterator[tuple[dict[str, Any], str]] = map(analysed, new)
@@ -194,8 +189,8 @@ def sweep(
         for point in tqdm(new, desc="sweep", unit="point", disable=None):
             found, reason = next(rows)
             table.add(point, {name: found[name] for name in results if name in found}, reason)
-    if path.suffix == ".parquet":
-        table.write_parquet(path)
+    if parquet_file is not None:
+        table.write_parquet(parquet_file)
     return len(new), table.failures(complete)
 
 

@@ -134,8 +134,6 @@ def _sweep(options: argparse.Namespace) -> None:
             viscous=not options.inviscid,
             n_workers=options.workers,
         )
-    except ModuleNotFoundError as error:
-        raise ValueError(str(error)) from error
     except WorkerLostError as error:
         raise ValueError(f"{error} The rows so far are kept: run again to go on") from error
     counts = f"points: {len(points)}, {n_new} new, {len(failures)} failed"

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from propmdao.result_table import ResultTable
+from propmdao.result_table import ResultTable, table_files
 
 POINT = {"name": "blade, new", "rpm": 0.1 + 0.2}
 
@@ -84,6 +84,20 @@ def test_a_row_that_does_not_fit_is_named(path: Path) -> None:
         file.write("blade,5.0\n")
     with pytest.raises(ValueError, match="has 2 cells in row 5 and 6 columns"):
         table(path)
+
+
+def test_missing_points_each_once_in_their_order(path: Path) -> None:
+    points = [POINT | {"rpm": rpm} for rpm in (5.0, 2.0, 4.0, 5.0, 3.0)]
+    assert table(path).missing(points) == [0, 2]
+    assert table(path).row(points[1])["reason"] == "out of reach, at 2 rpm"
+
+
+def test_parquet_without_pyarrow_is_refused_before_the_work(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr("importlib.util.find_spec", lambda name: None)
+    with pytest.raises(ValueError, match=r"need pyarrow: pip install 'propmdao\[parquet\]'"):
+        table_files("sweep.parquet")
 
 
 def test_parquet_has_the_same_values_with_their_types(path: Path, tmp_path: Path) -> None:

@@ -89,8 +89,23 @@ def test_a_sweep_goes_on_and_takes_more_samples(models, tmp_path, monkeypatch):
     run(models, samples_of(*designs[:5]), path)
     path.write_bytes(path.read_bytes()[:-20])  # as a kill leaves it
     prob = run(models, samples_of(*designs), path)
-    assert prob.driver.iter_count == 8
+    assert prob.driver.iter_count == 8  # and one run more, of a sample that the table has
     assert path.read_bytes() == straight.read_bytes()
+
+
+def test_rows_of_another_model_are_not_gone_on_with(models, tmp_path):
+    path = tmp_path / "t.csv"
+    samples = samples_of([-1.2, 0.0], [0.1, 0.2], [0.3, 0.4])
+    run(models, samples[:2], path)
+    before = path.read_bytes()
+    with pytest.raises(ValueError, match=r"of another model: at {'x\[0\]': 0.1.* g\[0\] was -0.95"):
+        run(models, samples, path, functools.partial(models.build, radius=2.0))
+    assert path.read_bytes() == before
+
+
+def test_a_sample_that_is_given_twice_is_one_row(models, tmp_path):
+    run(models, samples_of([0.1, 0.2], [0.3, 0.4], [0.1, 0.2]), tmp_path / "t.csv")
+    assert [row["x[0]"] for row in rows_of(tmp_path / "t.csv")] == ["0.1", "0.3"]
 
 
 def test_generators_of_openmdao(models, tmp_path):
@@ -164,6 +179,8 @@ def test_wrong_set_ups(models, tmp_path):
     path = tmp_path / "t.csv"
     with pytest.raises(ValueError, match="sampled 'f' is no independent variable"):
         run(models, [{"f": {"val": 1.0}}], path)
+    with pytest.raises(ValueError, match="a table ends in .csv or .parquet"):
+        run(models, samples_of([0.0, 0.0]), tmp_path / "t.xlsx")
     with pytest.raises(ValueError, match="there are no samples"):
         run(models, ProductGenerator({"radius": {"val": []}}), path)
     prob = om.Problem(reports=False)
