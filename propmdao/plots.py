@@ -9,7 +9,7 @@ the others solid.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import Any
+from typing import TYPE_CHECKING, Any, cast
 
 import jax
 import numpy as np
@@ -19,22 +19,20 @@ from propmdao.acoustics.formulation1a import Tones
 from propmdao.acoustics.levels import oaspl_db, pressure_history, spl_db
 from propmdao.geometry.airfoil import CHORD_FRACTION
 from propmdao.geometry.blade import span_interpolation
+from propmdao.plot_style import (
+    BLADE_COLORS,
+    GRID,
+    LINE_STYLES,
+    PART_COLORS,
+    page,
+    rows_of_axes,
+)
 from propmdao.propeller import Propeller
 
-try:
+if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
     from matplotlib.projections.polar import PolarAxes
-except ModuleNotFoundError as error:
-    raise ModuleNotFoundError(
-        "figures need matplotlib: pip install 'propmdao[plots]'", name=error.name
-    ) from None
-
-# Okabe and Ito's palette, which colour-blind people can tell apart.
-PART_COLORS = {"thickness": "#0072B2", "loading": "#D55E00", "total": "#000000"}
-BLADE_COLORS = ("#777777", "#009E73", "#CC79A7", "#E69F00")
-_LINE_STYLES = ("--", "-", "-.", ":")
-_GRID: dict[str, Any] = {"color": "0.9", "linewidth": 0.8}
 
 
 def convergence(
@@ -65,9 +63,9 @@ def convergence(
     evaluation = np.arange(1, objective.size + 1)
     failed = np.isnan(objective)
     best = np.fmin.accumulate(np.where(feasible, objective, np.nan))
-    figure = Figure(figsize=(10.0, 6.0), dpi=120, layout="constrained")
+    figure = page(6.0)
     axes = figure.add_subplot()
-    axes.grid(**_GRID)
+    axes.grid(**GRID)
     for chosen, marker, color, name in (
         (feasible & ~failed, "o", "#56B4E9", "feasible"),
         (~feasible & ~failed, "x", "#D55E00", "violates a constraint"),
@@ -82,7 +80,7 @@ def convergence(
             transform=axes.get_xaxis_transform(), label=f"analysis failed ({failed.sum()})",
         )  # fmt: skip
     axes.step(evaluation, best, where="post", color="black", linewidth=2.0, label="best feasible")
-    for (name, value), style in zip((references or {}).items(), _LINE_STYLES, strict=False):
+    for (name, value), style in zip((references or {}).items(), LINE_STYLES, strict=False):
         axes.axhline(value, color="0.4", linestyle=style, label=f"{name}, {value:.2f}")
     axes.set(xlabel="designs evaluated", ylabel=label, xlim=(0, objective.size + 1))
     axes.legend(loc="upper right", framealpha=0.95)
@@ -104,18 +102,18 @@ def blades(propellers: Mapping[str, Propeller], section_r_over_R: Sequence[float
     Figure
         The figure.
     """
-    figure = Figure(figsize=(10.0, 8.0), dpi=120, layout="constrained")
+    figure = page(8.0)
     grid = figure.add_gridspec(1, 2, width_ratios=(1.15, 1.0))
     spans: Any = grid[0].subgridspec(5, 1).subplots(sharex=True)
     sections: Any = grid[1].subgridspec(len(section_r_over_R), 1)
     sections = sections.subplots(sharex=True, sharey=True, squeeze=False)[:, 0]
     for i, (name, propeller) in enumerate(propellers.items()):
         # The first on top: its dashes let what is equal shine through.
-        line = {"color": BLADE_COLORS[i], "linestyle": _LINE_STYLES[i], "zorder": 4 - i}
+        line = {"color": BLADE_COLORS[i], "linestyle": LINE_STYLES[i], "zorder": 4 - i}
         _draw_spans(spans, propeller, linewidth=2.0, label=name, **line)
         _draw_sections(sections, propeller, section_r_over_R, linewidth=2.0, **line)
     for axes in (*spans, *sections):
-        axes.grid(**_GRID)
+        axes.grid(**GRID)
     spans[-1].set_xlabel("r/R")
     sections[-1].set_xlabel("x/c")
     figure.align_ylabels(spans)
@@ -138,7 +136,7 @@ def spectrum(tones: Mapping[str, Tones], observer: int = 0) -> Figure:
     Figure
         The figure. Stems start 80 dB below the loudest tone; what is quieter is not drawn.
     """
-    figure, rows = _rows(len(tones))
+    figure, rows = rows_of_axes(len(tones))
     loudest = max(float(np.max(spl_db(heard.total[observer]))) for heard in tones.values())
     top = 5.0 * np.ceil(loudest / 5.0 + 1.0)
     floor = top - 80.0
@@ -178,10 +176,9 @@ def directivity(
     Figure
         The figure; levels more than 40 dB below the loudest lie at its centre.
     """
-    figure = Figure(figsize=(10.0, 8.0), dpi=120)
+    figure = page(8.0, layout=None)
     # Half a circle fills the middle half of its square; the legend stands beside it.
-    axes = figure.add_axes((-0.06, 0.06, 0.704, 0.88), projection="polar")
-    assert isinstance(axes, PolarAxes)
+    axes = cast("PolarAxes", figure.add_axes((-0.06, 0.06, 0.704, 0.88), projection="polar"))
     angle = np.radians(np.asarray(elevation_deg, float))
     levels = {
         (name, part): np.asarray(oaspl_db(amplitude))
@@ -190,7 +187,7 @@ def directivity(
     }
     top = 5.0 * np.ceil(max(level.max() for level in levels.values()) / 5.0)
     floor = top - 40.0
-    styles = dict(zip(tones, _LINE_STYLES, strict=False))
+    styles = dict(zip(tones, LINE_STYLES, strict=False))
     for (name, part), level in levels.items():
         axes.plot(
             angle, np.maximum(level, floor), color=PART_COLORS[part], linestyle=styles[name],
@@ -205,7 +202,7 @@ def directivity(
     axes.set_thetagrids(ticks, [named.get(tick, f"{tick:+.0f}°") for tick in ticks])
     for label, tick in zip(axes.get_xticklabels(), ticks, strict=True):
         label.set_horizontalalignment("left" if abs(tick) < 90.0 else "center")
-    axes.grid(**_GRID)
+    axes.grid(**GRID)
     # Along the lower edge, beside the levels of the circles.
     figure.text(0.06, 0.27, "OASPL, dB re 20 µPa", rotation=90.0, va="center")
     if mark_deg is not None:
@@ -236,7 +233,7 @@ def pressure(tones: Mapping[str, Tones], observer: int = 0) -> Figure:
     Figure
         The figure.
     """
-    figure, rows = _rows(len(tones))
+    figure, rows = rows_of_axes(len(tones))
     for axes, (name, heard) in zip(rows, tones.items(), strict=True):
         for part, amplitude in _parts(heard, observer).items():
             time, p = pressure_history(heard.frequency_hz, amplitude, 256)
@@ -247,16 +244,6 @@ def pressure(tones: Mapping[str, Tones], observer: int = 0) -> Figure:
     rows[-1].set_xlabel("time since blade 1 was at azimuth 0, ms")
     figure.legend(*rows[0].get_legend_handles_labels(), loc="outside upper right", ncols=3)
     return figure
-
-
-def _rows(n: int) -> tuple[Figure, npt.NDArray[Any]]:
-    """Equal axes with common scales, one below the other."""
-    figure = Figure(figsize=(10.0, 1.0 + 3.0 * n), dpi=120, layout="constrained")
-    rows = figure.subplots(n, 1, sharex=True, sharey=True, squeeze=False)[:, 0]
-    for axes in rows:
-        axes.grid(**_GRID)
-        axes.set_axisbelow(True)
-    return figure, rows
 
 
 def _parts(heard: Tones, observer: int | slice = slice(None)) -> dict[str, jax.Array]:

@@ -40,7 +40,7 @@ def heard() -> dict[str, Tones]:
 
 @pytest.fixture(scope="module")
 def propellers():
-    before = load_propeller("apcsf_11x4.7")
+    before = load_propeller("apcsf_11x4.7_thesis")  # its thickness is that of its airfoils
     return {
         "before": before,
         "after": dataclasses.replace(before, airfoils=[(0.15, "naca6406"), (1.0, "naca4403")]),
