@@ -44,10 +44,27 @@ def test_diameter_is_the_inches_in_the_name(name: str, diameter: float) -> None:
 
 
 @pytest.mark.parametrize("name", ["apcsf_11x4.7", "apcsf_10x4.7"])
-def test_slow_flyers_go_from_e63_at_the_hub_to_clark_y_at_the_tip(name: str) -> None:
+def test_slow_flyers_have_the_sections_of_the_makers_table_of_a_sister(name: str) -> None:
     propeller = load_propeller(name)
-    assert propeller.airfoils == ((0.15, "e63"), (1.0, "clarky"))
-    assert propeller.thickness_over_chord is None
+    assert propeller.airfoils == ((0.15, "e63"), (0.94, "e63"), (1.0, "naca4412"))
+    assert "Not published for this blade" in propeller.source
+
+
+def test_thickness_of_the_sister_is_that_of_the_makers_table(reference_data: Path) -> None:
+    table = np.loadtxt(
+        reference_data / "uiuc_geometry" / "apcsf_10x7.csv", delimiter=",", skiprows=1
+    )
+    propeller = load_propeller("apcsf_11x4.7")
+    of_sister = np.interp(propeller.r_over_R, table[:, 0] / 0.127, table[:, 3])
+    np.testing.assert_allclose(propeller.thickness_over_chord, of_sister, atol=6e-5)
+
+
+def test_the_sections_of_the_thesis_can_be_chosen() -> None:
+    thesis, own = load_propeller("apcsf_11x4.7_thesis"), load_propeller("apcsf_11x4.7")
+    assert thesis.airfoils == ((0.15, "e63"), (1.0, "clarky"))
+    assert thesis.thickness_over_chord is None
+    np.testing.assert_array_equal(thesis.beta_deg, own.beta_deg)
+    np.testing.assert_array_equal(thesis.c_over_R, own.c_over_R)
 
 
 def test_what_is_assumed_about_the_thin_electric_is_said() -> None:

@@ -32,6 +32,7 @@ from propmdao.aerodynamics.polars.table import (
     SectionCurves,
     curve_coefficients,
     section_curves,
+    zero_lift_angles,
 )
 from propmdao.aerodynamics.stall_delay import delay_factor, delayed_stall
 from propmdao.aerodynamics.strips import Strips
@@ -107,6 +108,9 @@ class SectionStates:
         W, speed of the air relative to the section [m/s].
     angle_of_attack : (ns,) array
         Effective, from the chord line [rad].
+    zero_lift_angle : (ns,) array
+        Angle of attack without lift, by the polar in two dimensions; without polars that of
+        thin-airfoil theory [rad].
     lift_coefficient, drag_coefficient : (ns,) arrays
         Of the section; without polars the lift of the lattice, and no drag.
     residual : (ns,) array
@@ -115,6 +119,7 @@ class SectionStates:
 
     relative_speed: Array
     angle_of_attack: Array
+    zero_lift_angle: Array
     lift_coefficient: Array
     drag_coefficient: Array
     residual: Array
@@ -228,11 +233,12 @@ def section_states(flow: StripFlow, recambering: Array, laws: SectionLaws | None
         With the residual that the recambering has to bring to zero.
     """
     alpha, lift = flow.angle_and_lift(recambering)
-    held, cd = lift, jnp.zeros_like(lift)
+    held, cd, zero_lift = lift, jnp.zeros_like(lift), flow.strips.zero_lift_angle
     if laws is not None:
         more, cd = laws.beyond_thin(alpha)
         held = laws.thin(alpha) + laws.mean @ more
-    return SectionStates(flow.relative_speed, alpha, held, cd, lift - held)
+        zero_lift = zero_lift_angles(laws.curves, zero_lift)
+    return SectionStates(flow.relative_speed, alpha, zero_lift, held, cd, lift - held)
 
 
 def solve_recambering(flow: StripFlow, laws: SectionLaws) -> Array:
@@ -258,7 +264,7 @@ def solve_recambering(flow: StripFlow, laws: SectionLaws) -> Array:
     fractions = jnp.asarray(_FRACTIONS)[:, None]
 
     def residual(delta: Array) -> Array:
-        return section_states(fixed_flow, delta, fixed_laws).residual
+        return _residual(fixed_flow, fixed_laws, delta)
 
     def unfinished(state: Any) -> Array:
         count, _, missing, _ = state
@@ -278,7 +284,13 @@ def solve_recambering(flow: StripFlow, laws: SectionLaws) -> Array:
     _, delta, _, slope = jax.lax.while_loop(unfinished, step, start)
     # One more Newton step, in which alone the arguments count: its slope is that of the solution.
     delta, slope = jax.lax.stop_gradient((delta, slope))
-    return delta - jnp.linalg.solve(slope, section_states(flow, delta, laws).residual)
+    return delta - jnp.linalg.solve(slope, _residual(flow, laws, delta))
+
+
+def _residual(flow: StripFlow, laws: SectionLaws, recambering: Array) -> Array:
+    """Lift coefficient of the lattice less that of the polars: (ns,)."""
+    alpha, lift = flow.angle_and_lift(recambering)
+    return lift - laws.thin(alpha) - laws.mean @ laws.beyond_thin(alpha)[0]
 
 
 def _residual_and_slope(

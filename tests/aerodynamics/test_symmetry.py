@@ -23,7 +23,7 @@ def turned(vectors, blade):
 def test_one_blade_for_all_is_all_blades_solved(slow_flyer):
     nodes, radius = slow_flyer.nodes(3, 6), slow_flyer.radius
     lattice = lattice_geometry(nodes, B, radius)
-    flow = Flow(lattice, radius, OMEGA, SPEED, DENSITY)
+    flow = Flow(lattice, radius, OMEGA, SPEED, DENSITY, None)
     by_symmetry = loads_at(flow, B, INDUCED).circulation
 
     # All blades on their own: unknowns of every blade, each with its own single-bladed influence.

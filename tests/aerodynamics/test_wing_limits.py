@@ -35,7 +35,7 @@ def wing_loads(nodes, span):
     edge = lattice.rings.corner[-1]
     length = jnp.asarray([0.0, 0.1, 1.0, 10.0, 100.0]) * span
     wake = edge[:, None, None, :] - length[None, None, :, None] * jnp.array([0.0, 0.0, 1.0])
-    loads = loads_with_wake(lattice, wake, jnp.full(4, 1e-6), 0.0, SPEED, DENSITY)
+    loads = loads_with_wake(lattice, wake, jnp.full(4, 1e-6), 0.0, SPEED, 0.0, DENSITY, None)
     force = loads.force.sum(axis=0)
     return loads, -force[1], -force[2]
 

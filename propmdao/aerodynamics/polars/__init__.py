@@ -17,8 +17,12 @@ from propmdao.aerodynamics.polars.table import (
     PolarError,
     PolarRangeWarning,
     PolarTable,
+    SectionCurves,
+    curve_coefficients,
     section_coefficients,
+    section_curves,
     warn_outside,
+    zero_lift_angles,
 )
 from propmdao.aerodynamics.polars.user_table import Polar, table_from_polars
 
@@ -27,15 +31,19 @@ __all__ = [
     "PolarError",
     "PolarRangeWarning",
     "PolarTable",
+    "SectionCurves",
     "SectionPolars",
     "blade_tables",
+    "curve_coefficients",
     "polars_for",
     "read_c81",
     "read_polar",
     "read_polars",
     "section_coefficients",
+    "section_curves",
     "section_tables",
     "table_from_polars",
     "warn_outside",
     "warn_outside_sections",
+    "zero_lift_angles",
 ]
