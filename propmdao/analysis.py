@@ -12,9 +12,19 @@ import numpy as np
 import numpy.typing as npt
 from jax import Array
 
+from propmdao.acoustics.broadband import SelfNoise
 from propmdao.acoustics.formulation1a import Tones, require_subsonic_tip, tones
-from propmdao.acoustics.levels import oaspl_db, oaspl_dba, spl_db, third_octave
-from propmdao.acoustics.observers import arc
+from propmdao.acoustics.levels import (
+    REFERENCE_PRESSURE,
+    a_weighting,
+    level_db,
+    mean_square,
+    oaspl_db,
+    oaspl_dba,
+    spl_db,
+    third_octave,
+)
+from propmdao.acoustics.observers import arc, require_outside_rotor
 from propmdao.aerodynamics.coefficients import Coefficients, coefficients
 from propmdao.aerodynamics.polars import (
     SectionPolars,
@@ -31,8 +41,11 @@ from propmdao.geometry.blade import Blade, span_interpolation
 from propmdao.geometry.meshes import MeshRadii, blade_meshes, mesh_radii
 from propmdao.geometry.surface import Panels, surface_panels
 from propmdao.propeller import Propeller
+from propmdao.self_noise import BANDS_HZ, self_noise
 
 SOUND_SPEED = 340.294
+#: Mechanisms of broadband noise, by their key in the results.
+MECHANISMS = tuple(field.name for field in dataclasses.fields(SelfNoise))
 _RAD_PER_S = np.pi / 30.0
 
 
@@ -54,6 +67,8 @@ class Analysis:
         Radius [m] and elevation [deg] of the observers.
     tones : Tones
         Their complex pressure amplitudes.
+    broadband : SelfNoise or None
+        Mean squares in the third octaves `propmdao.self_noise.BANDS_HZ`, where asked for.
     """
 
     rpm: float
@@ -64,6 +79,7 @@ class Analysis:
     coefficients: Coefficients
     observers: npt.NDArray[np.float64]
     tones: Tones
+    broadband: SelfNoise | None
 
     def to_dict(self) -> dict[str, Any]:
         """Results as plain numbers, with the keys of ``propmdao analyze --json``.
@@ -95,9 +111,8 @@ class Analysis:
 
     def _observer(self, i: int, levels: dict[str, np.ndarray]) -> dict[str, Any]:
         frequency = np.asarray(self.tones.frequency_hz)
-        center, band = third_octave(frequency, self.tones.total[i])
         spectra = [name for name in levels if name.startswith("spl")]
-        return {
+        result = {
             "elevation_deg": float(self.observers[i, 1]),
             "radius": float(self.observers[i, 0]),
             "spl_bpf_db": float(levels["spl_db"][i, 0]),
@@ -107,11 +122,50 @@ class Analysis:
                 | {name: float(levels[name][i, m]) for name in spectra}
                 for m, f in enumerate(frequency)
             ],
-            "third_octave": [
-                {"frequency_hz": float(f), "spl_db": float(level)}
-                for f, level in zip(center, band, strict=True)
-            ],
         }
+        center, band = third_octave(frequency, self.tones.total[i])
+        if self.broadband is not None:
+            noise = {name: np.asarray(getattr(self.broadband, name))[i] for name in MECHANISMS} | {
+                "spl": np.asarray(self.broadband.total)[i]
+            }
+            center, band = _with_noise(center, band, noise["spl"])
+            result |= _total(self.tones, i, noise["spl"])
+            in_bands = {name: np.asarray(level_db(power)) for name, power in noise.items()}
+            result["broadband"] = [
+                {"frequency_hz": float(f)}
+                | {f"{name}_db": float(level[k]) for name, level in in_bands.items()}
+                for k, f in enumerate(BANDS_HZ)
+            ]
+        result["third_octave"] = [
+            {"frequency_hz": float(f), "spl_db": float(level)}
+            for f, level in zip(center, band, strict=True)
+        ]
+        return result
+
+
+def _with_noise(
+    center: npt.NDArray[np.float64], band: npt.NDArray[np.float64], noise: npt.NDArray[np.float64]
+) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float64]]:
+    """Levels in all bands of tones or noise."""
+    # Both are exact mid-band frequencies, but computed in two ways.
+    numbers, known = (np.rint(10.0 * np.log10(f / 1000.0)) for f in (center, BANDS_HZ))
+    everywhere = np.union1d(numbers, known)
+    power = np.zeros(everywhere.size)
+    power[np.searchsorted(everywhere, numbers)] += REFERENCE_PRESSURE**2 * 10 ** (band / 10)
+    power[np.searchsorted(everywhere, known)] += noise
+    return 1000.0 * 10.0 ** (everywhere / 10.0), np.asarray(level_db(power))
+
+
+def _total(tones: Tones, i: int, noise: npt.NDArray[np.float64]) -> dict[str, float]:
+    """Overall levels of tones and broadband noise together, and of the noise alone."""
+    power = np.concatenate([np.asarray(mean_square(tones.total[i])), noise])
+    frequency = np.concatenate([np.asarray(tones.frequency_hz), BANDS_HZ])
+    weighted = power * 10 ** (np.asarray(a_weighting(np.maximum(frequency, 1e-3))) / 10.0)
+    return {
+        "oaspl_db": float(level_db(power.sum())),
+        "oaspl_dba": float(level_db(weighted.sum())),
+        "oaspl_broadband_db": float(level_db(noise.sum())),
+    }
 
 
 @jax.jit
@@ -134,6 +188,7 @@ def analyze(
     viscous: bool = True,
     stall_delay: bool = True,
     polars: SectionPolars | None = None,
+    broadband: bool = False,
     observers: Sequence[tuple[float, float]] = (),
     fidelity: Fidelity = Fidelity(),  # noqa: B008 - frozen
 ) -> Analysis:
@@ -158,6 +213,8 @@ def analyze(
     polars : SectionPolars, optional
         Of `propmdao.aerodynamics.polars.polars_for`, for tables of one's own; by default the
         catalogue's.
+    broadband : bool
+        Add the broadband self-noise of the blades to the tones.
     observers : sequence of (radius, elevation_deg)
         Microphones flying along with the rotor, on an arc around its centre: distance [m] and
         elevation from the rotor plane, negative on the wake's side [deg].
@@ -175,18 +232,18 @@ def analyze(
         Bad input, in one line; `TrimError` among them when the thrust is out of reach within
         `rotation_bounds`.
     """
-    _check(propeller, rpm, thrust, speed, density, observers)
+    _check(rpm, thrust, speed, density)
     # Of the description, which refuses blade angles beyond its range.
     propeller = dataclasses.replace(propeller, beta_deg=propeller.beta_deg + twist_offset_deg)
     blade = Blade.from_propeller(propeller)
     stations = propeller.r_over_R
     radii = mesh_radii(stations, fidelity.n_spanwise, fidelity.n_surface_span)
     nodes, panels = _meshes(blade, radii, fidelity.n_chordwise, fidelity.n_contour)
+    section_radii = span_interpolation(stations, strip_radii(stations[0], fidelity.n_spanwise))
     sections = None
     if viscous:
         polars = polars or polars_for(propeller)
-        at = span_interpolation(stations, strip_radii(stations[0], fidelity.n_spanwise))
-        sections = viscous_sections(polars, blade, at, SOUND_SPEED, float(stall_delay))
+        sections = viscous_sections(polars, blade, section_radii, SOUND_SPEED, float(stall_delay))
     radius = 0.5 * propeller.diameter
     air = float(speed), float(density)
     if thrust is not None:
@@ -204,6 +261,8 @@ def analyze(
     if sections is not None and polars is not None:
         _warn_outside_polars(polars, sections, blade, stations, steady, float(density))
     points = np.asarray(observers, float).reshape(-1, 2)
+    positions = arc(points[:, 0], points[:, 1])
+    require_outside_rotor(positions, radius)
     heard = tones(
         panels,
         steady.point_loads,
@@ -211,11 +270,16 @@ def analyze(
         omega,
         *air,
         SOUND_SPEED,
-        arc(points[:, 0], points[:, 1]),
+        positions,
         fidelity.n_harmonics,
     )
+    noise = None
+    if broadband:
+        noise = self_noise(
+            steady, blade, section_radii, propeller.n_blades, omega, *air, SOUND_SPEED, positions
+        )
     of = coefficients(steady.thrust, steady.torque, omega, *air, propeller.diameter)
-    return Analysis(float(rpm), *air, viscous, steady, of, points, heard)
+    return Analysis(float(rpm), *air, viscous, steady, of, points, heard, noise)
 
 
 @partial(jax.jit, static_argnames=("n_chordwise", "n_contour"))
@@ -244,12 +308,10 @@ def _warn_outside_polars(
 
 
 def _check(
-    propeller: Propeller,
     rpm: float | None,
     thrust: float | None,
     speed: float,
     density: float,
-    observers: Sequence[tuple[float, float]],
 ) -> None:
     """Refuse bad input with one line."""
     if (rpm is None) == (thrust is None):
@@ -262,9 +324,3 @@ def _check(
         raise ValueError(f"speed must be 0 m/s or more; it is {speed:g}")
     if not 0.0 < density < np.inf:
         raise ValueError(f"density must be positive; it is {density:g} kg/m3")
-    for radius, _ in observers:
-        if not radius > 0.5 * propeller.diameter:
-            raise ValueError(
-                f"observer radius must be larger than the propeller's, "
-                f"{0.5 * propeller.diameter:g} m; it is {radius:g}"
-            )

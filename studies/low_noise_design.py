@@ -111,11 +111,13 @@ def optimise(prob: om.Problem, evaluations: int, seed: int, output: Path) -> Non
         raise SystemExit("No design meets the constraint: more evaluations or other bounds?")
 
 
-def evaluate(propeller: Propeller, **drive: float) -> Analysis:
+def evaluate(
+    propeller: Propeller, thrust: float | None = None, rpm: float | None = None
+) -> Analysis:
     """Analyse a propeller at a thrust or an rpm, on the arc of the microphone."""
     observers = [(DISTANCE, elevation) for elevation in DIRECTIVITY]
-    return analyze(propeller, **drive, speed=SPEED, density=DENSITY, observers=observers,
-                   fidelity=FIDELITY)  # fmt: skip
+    return analyze(propeller, thrust=thrust, rpm=rpm, speed=SPEED, density=DENSITY,
+                   observers=observers, fidelity=FIDELITY)  # fmt: skip
 
 
 def naca_blade(name: str, design: dict[str, list[float]], folder: Path) -> Propeller:

@@ -32,7 +32,6 @@ from propmdao.aerodynamics.polars.table import (
     SectionCurves,
     curve_coefficients,
     section_curves,
-    zero_lift_angles,
 )
 from propmdao.aerodynamics.stall_delay import delay_factor, delayed_stall
 from propmdao.aerodynamics.strips import Strips
@@ -108,9 +107,6 @@ class SectionStates:
         W, speed of the air relative to the section [m/s].
     angle_of_attack : (ns,) array
         Effective, from the chord line [rad].
-    zero_lift_angle : (ns,) array
-        Angle of attack without lift, by the polar in two dimensions; without polars that of
-        thin-airfoil theory [rad].
     lift_coefficient, drag_coefficient : (ns,) arrays
         Of the section; without polars the lift of the lattice, and no drag.
     residual : (ns,) array
@@ -119,7 +115,6 @@ class SectionStates:
 
     relative_speed: Array
     angle_of_attack: Array
-    zero_lift_angle: Array
     lift_coefficient: Array
     drag_coefficient: Array
     residual: Array
@@ -233,12 +228,11 @@ def section_states(flow: StripFlow, recambering: Array, laws: SectionLaws | None
         With the residual that the recambering has to bring to zero.
     """
     alpha, lift = flow.angle_and_lift(recambering)
-    held, cd, zero_lift = lift, jnp.zeros_like(lift), flow.strips.zero_lift_angle
+    held, cd = lift, jnp.zeros_like(lift)
     if laws is not None:
         more, cd = laws.beyond_thin(alpha)
         held = laws.thin(alpha) + laws.mean @ more
-        zero_lift = zero_lift_angles(laws.curves, zero_lift)
-    return SectionStates(flow.relative_speed, alpha, zero_lift, held, cd, lift - held)
+    return SectionStates(flow.relative_speed, alpha, held, cd, lift - held)
 
 
 def solve_recambering(flow: StripFlow, laws: SectionLaws) -> Array:

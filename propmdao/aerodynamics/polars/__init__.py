@@ -22,7 +22,6 @@ from propmdao.aerodynamics.polars.table import (
     section_coefficients,
     section_curves,
     warn_outside,
-    zero_lift_angles,
 )
 from propmdao.aerodynamics.polars.user_table import Polar, table_from_polars
 
@@ -45,5 +44,4 @@ __all__ = [
     "table_from_polars",
     "warn_outside",
     "warn_outside_sections",
-    "zero_lift_angles",
 ]

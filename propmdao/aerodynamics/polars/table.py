@@ -127,42 +127,6 @@ def curve_coefficients(
     return factor * cl, jnp.exp(log_cd), factor * cm
 
 
-def zero_lift_angles(curves: SectionCurves, guess: jax.Array) -> jax.Array:
-    """Angles of attack without lift.
-
-    Parameters
-    ----------
-    curves : SectionCurves
-        Polars of n sections.
-    guess : (n,) array
-        Where the crossing from negative to positive lift is looked for: the nearest one counts
-        [rad].
-
-    Returns
-    -------
-    (n,) array
-        Angles, with the derivative of the implicit function [rad].
-    """
-    cl = curves.values[:, 0]
-    rises = (cl[:, :-1] <= 0.0) & (cl[:, 1:] > 0.0)
-    middle = 0.5 * (curves.alpha[1:] + curves.alpha[:-1])
-    cell = jnp.where(rises, jnp.abs(middle - guess[:, None]), jnp.inf).argmin(axis=1)
-    row = jnp.arange(cell.size)
-    below, above = cl[row, cell], cl[row, cell + 1]
-    width = curves.alpha[cell + 1] - curves.alpha[cell]
-    angle = curves.alpha[cell] - below * width / (above - below)
-
-    def lift(angle: jax.Array) -> jax.Array:
-        return curve_coefficients(curves, angle)[0]
-
-    # Newton steps on the C1 curve: the last one carries the derivative.
-    for _ in range(3):
-        angle = jax.lax.stop_gradient(angle)
-        value, slope = jax.jvp(lift, (angle,), (jnp.ones_like(angle),))
-        angle = angle - value / jax.lax.stop_gradient(slope)
-    return angle
-
-
 @jax.jit
 def section_coefficients(
     table: PolarTable, alpha: jax.Array, re: jax.Array, mach: jax.Array | float = 0.0

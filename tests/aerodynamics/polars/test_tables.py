@@ -16,14 +16,11 @@ from propmdao.aerodynamics.polars import (
     PolarRangeWarning,
     PolarTable,
     blade_tables,
-    curve_coefficients,
     polars_for,
     section_coefficients,
-    section_curves,
     section_tables,
     warn_outside,
     warn_outside_sections,
-    zero_lift_angles,
 )
 from propmdao.aerodynamics.polars import propeller_polars as finding
 from propmdao.aerodynamics.polars.neuralfoil_tables import REYNOLDS, neuralfoil_polar
@@ -236,13 +233,3 @@ def test_sections_between_the_nodes_are_near_neuralfoil(
     exact = neuralfoil_polar(camber, thickness, alpha, np.array([re]))
     differences = [np.abs(np.asarray(found[k]) - exact[k][0]).mean() for k in range(2)]
     np.testing.assert_allclose(differences, BETWEEN_NODES[case], rtol=0.1)
-
-
-@pytest.mark.parametrize("airfoil", ["naca0012", "e63", "clarky"])
-def test_there_is_no_lift_at_the_zero_lift_angle(section: Section, airfoil: str) -> None:
-    re = jnp.array([3e4, 1e5, 4e5])
-    curves = section_curves(section(airfoil, 3), re)
-    angle = zero_lift_angles(curves, jnp.radians(jnp.full(3, -4.0)))
-    np.testing.assert_allclose(curve_coefficients(curves, angle)[0], 0.0, atol=1e-9)
-    low, high = {"naca0012": (-0.01, 0.01), "e63": (-4.5, -1.0), "clarky": (-3.9, -0.5)}[airfoil]
-    assert ((np.degrees(angle) > low) & (np.degrees(angle) < high)).all()
