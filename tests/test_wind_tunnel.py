@@ -143,6 +143,7 @@ def test_calibration_brings_the_mean_relative_error_to_zero():
     assert np.mean(ct / static.CT - 1.0) == pytest.approx(0.0, abs=1e-4)
 
 
+@pytest.mark.filterwarnings("ignore:Tolerance of 1.0 reached:RuntimeWarning")
 def test_calibration_that_cannot_be_is_refused():
     static = points([2000], [0], [0.11], [0.04])
 

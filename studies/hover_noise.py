@@ -1,0 +1,168 @@
+"""The tone of a hovering propeller against microphones in an anechoic chamber.
+
+APC-SF 11x4.7 at three rotation speeds and five elevations, standing still: no free stream is made
+up and nothing is fitted. Beside it stand the errors that the thesis reports for these microphones,
+with a free stream of J 0.3. To tell loads from acoustics, the same tone is shown once more with the
+computed loads scaled to the thrust of the test and to the torque of the wind tunnel.
+"""
+
+import argparse
+import csv
+import dataclasses
+import tomllib
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from rich.console import Console
+from rich.table import Table
+
+from propmdao import measurement_plots
+from propmdao.acoustics.formulation1a import tones
+from propmdao.acoustics.levels import spl_db
+from propmdao.acoustics.observers import arc
+from propmdao.analysis import SOUND_SPEED, Analysis, analyze
+from propmdao.fidelity import Fidelity
+from propmdao.geometry.blade import Blade
+from propmdao.geometry.meshes import blade_meshes, mesh_radii
+from propmdao.geometry.surface import surface_panels
+from propmdao.propeller import load_propeller
+from propmdao.records import PointLoads
+from propmdao.wind_tunnel import read_wind_tunnel
+
+PROPELLER = load_propeller("apcsf_11x4.7")
+MEASURED = Path(__file__).parent / "measurements" / "hover_noise_apcsf_11x4.7.toml"
+DENSITY = 1.18  # kg/m3: the test states none, with this its thrusts are those of the wind tunnel
+ARC = np.arange(-67.5, 68.0, 2.5)  # deg
+
+
+@dataclasses.dataclass(frozen=True)
+class HoverTones:
+    """Levels at blade passage in hover, a row for each rotation speed.
+
+    Attributes
+    ----------
+    rpm, elevation_deg : arrays
+        Rotation speeds [rev/min], elevations of the microphones [deg].
+    spl_db, measured_db, scaled_db : (n_rpm, n_microphones) arrays
+        Computed, measured, and computed with the loads scaled to thrust and torque measured.
+    thesis_db : (n_rpm, n_microphones) array
+        Absolute errors of the thesis.
+    loads, measured_loads : (n_rpm, 2) arrays
+        Thrust [N] and torque [N m].
+    arc_db : (n_rpm, n_arc) array
+        Computed on `ARC`.
+    """
+
+    rpm: np.ndarray
+    elevation_deg: np.ndarray
+    spl_db: np.ndarray
+    measured_db: np.ndarray
+    scaled_db: np.ndarray
+    thesis_db: np.ndarray
+    loads: np.ndarray
+    measured_loads: np.ndarray
+    arc_db: np.ndarray
+
+
+def hover_tones() -> HoverTones:
+    """Compute the tones where they were measured."""
+    test: dict[str, Any] = tomllib.loads(MEASURED.read_text(encoding="utf-8"))
+    rpm, elevation = (np.array(test["blade_passage"][key]) for key in ("rpm", "elevation_deg"))
+    known = measured_loads(rpm, test["thrust"])
+    points = [(test["radius"], angle) for angle in (*elevation, *ARC)]
+    found = [analyze(PROPELLER, rpm=speed, density=DENSITY, observers=points) for speed in rpm]
+    loads = np.array([(of.steady.thrust, of.steady.torque) for of in found])
+    level = np.array([spl_db(of.tones.total[:, 0]) for of in found])
+    scaled = [scaled_tone(of, *ratio) for of, ratio in zip(found, known / loads, strict=True)]
+    return HoverTones(
+        rpm=rpm,
+        elevation_deg=elevation,
+        spl_db=level[:, : elevation.size],
+        measured_db=np.array(test["blade_passage"]["spl_db"]),
+        scaled_db=np.array(scaled)[:, : elevation.size],
+        thesis_db=np.array(test["thesis"]["absolute_error_db"]),
+        loads=loads,
+        measured_loads=known,
+        arc_db=level[:, elevation.size :],
+    )
+
+
+def measured_loads(rpm: np.ndarray, test: dict[str, list[float]]) -> np.ndarray:
+    """Thrust of the test [N] and torque of the wind tunnel [N m]; the test has no torque."""
+    static = read_wind_tunnel(MEASURED.parent / "uiuc_apcsf_11x4.7.toml").static
+    cp, n = np.interp(rpm, static.rpm, static.CP), rpm / 60.0
+    torque = cp / (2.0 * np.pi) * DENSITY * n**2 * PROPELLER.diameter**5
+    return np.stack([np.interp(rpm, test["rpm"], test["thrust"]), torque], axis=1)
+
+
+def scaled_tone(found: Analysis, thrust: float, torque: float) -> np.ndarray:
+    """Level of the first tone with the loads along and about the axis multiplied."""
+    r, n = PROPELLER.r_over_R, Fidelity()
+    radii = mesh_radii(r, n.n_spanwise, n.n_surface_span)
+    _, surface = blade_meshes(Blade.from_propeller(PROPELLER), radii, n.n_chordwise, n.n_contour)
+    force = found.steady.point_loads.force * np.array([torque, torque, thrust])
+    loads = PointLoads(found.steady.point_loads.position, force)
+    heard = tones(
+        surface_panels(surface), loads, PROPELLER.n_blades, found.rpm * np.pi / 30.0, 0.0, DENSITY,
+        SOUND_SPEED, arc(*found.observers.T), 1,
+    )  # fmt: skip
+    return np.asarray(spl_db(heard.total[:, 0]))
+
+
+def off_power_law_db(heard: HoverTones) -> float:
+    """Largest distance of the measured levels from a power of rotation speed at each microphone."""
+    x = np.log(heard.rpm)
+    fits = [np.polyval(np.polyfit(x, level, 1), x) for level in heard.measured_db.T]
+    return float(np.abs(np.array(fits).T - heard.measured_db).max())
+
+
+def rows(heard: HoverTones) -> list[tuple[str, ...]]:
+    """Table of errors at each microphone, its head first, mean and largest at the end."""
+    head = ("rpm", "elevation, deg", "measured, dB", "computed, dB", "error, dB",
+            "measured loads: error, dB", "thesis: size of error, dB")  # fmt: skip
+    table: list[tuple[str, ...]] = [head]
+    error, scaled = heard.spl_db - heard.measured_db, heard.scaled_db - heard.measured_db
+    for i, rpm in enumerate(heard.rpm):
+        for k, angle in enumerate(heard.elevation_deg):
+            table.append(
+                (f"{rpm}", f"{angle:+.1f}", f"{heard.measured_db[i, k]:.2f}",
+                 f"{heard.spl_db[i, k]:.2f}", f"{error[i, k]:+.2f}", f"{scaled[i, k]:+.2f}",
+                 f"{heard.thesis_db[i, k]:.2f}")
+            )  # fmt: skip
+    for label, of in (("mean size", np.mean), ("largest", np.max)):
+        sizes = [f"{of(np.abs(values)):.2f}" for values in (error, scaled, heard.thesis_db)]
+        table.append((label, "", "", "", *sizes))
+    return table
+
+
+def main() -> None:
+    """Compute, print the table, write the files."""
+    parser = argparse.ArgumentParser(description=__doc__.split("\n\n")[0])
+    parser.add_argument("--output", type=Path, default="results/hover_noise",
+                        help="folder, default %(default)s")  # fmt: skip
+    output = parser.parse_args().output.absolute()
+    output.mkdir(parents=True, exist_ok=True)
+
+    heard = hover_tones()
+    head, *body = rows(heard)
+    with (output / "hover_noise.csv").open("w", newline="", encoding="utf-8") as stream:
+        csv.writer(stream).writerows([head, *body])
+    table = Table(*head, box=None, padding=(0, 1, 0, 0))
+    for row in body:
+        table.add_row(*row)
+    Console(highlight=False).print(table)
+    for rpm, loads, known in zip(heard.rpm, heard.loads, heard.measured_loads, strict=True):
+        print(f"{rpm} rpm: thrust {loads[0]:.2f} N, measured {known[0]:.2f}; "
+              f"torque {loads[1]:.4f} N m, measured {known[1]:.4f}")  # fmt: skip
+    print(f"Measured levels are up to {off_power_law_db(heard):.1f} dB off a power of rpm.")
+    names = [f"{rpm} rpm" for rpm in heard.rpm]
+    measurement_plots.tone_directivity(
+        ARC, dict(zip(names, heard.arc_db, strict=True)),
+        heard.elevation_deg, dict(zip(names, heard.measured_db, strict=True)),
+    ).savefig(output / "directivity.png")  # fmt: skip
+    print(f"Table and figure: {output}")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,138 @@
+"""The comparisons with the wind tunnel and with hover noise, run on a few points."""
+
+from __future__ import annotations
+
+import csv
+import dataclasses
+import importlib
+
+import numpy as np
+import pytest
+
+pytest.importorskip("matplotlib")
+
+from propmdao.analysis import analyze
+from propmdao.propeller import load_propeller
+from propmdao.wind_tunnel import calibrated_twist_deg
+
+CASE = "apcsf_11x4.7"
+
+
+@pytest.fixture
+def study(checkout, monkeypatch):
+    """A study by its name, its main called as from the command line."""
+    monkeypatch.syspath_prepend(checkout / "studies")
+    monkeypatch.setenv("COLUMNS", "80")
+
+    def get(name):
+        return importlib.reload(importlib.import_module(name))
+
+    return get
+
+
+def run(study, monkeypatch, capsys, folder, *arguments) -> str:
+    monkeypatch.setattr("sys.argv", [study.__name__, "--output", str(folder), *arguments])
+    study.main()
+    return capsys.readouterr().out
+
+
+def rows(file) -> list[dict[str, str]]:
+    with file.open(newline="") as stream:
+        return list(csv.DictReader(stream))
+
+
+@pytest.fixture
+def few_points(study):
+    """Two static points and two with flight speed, one propeller."""
+    validation = study("aerodynamic_validation")
+    whole = validation.measurements(CASE)
+    few = dataclasses.replace(whole, static=whole.static[[2, 9]], dynamic=whole.dynamic[[18, 29]])
+    validation.CASES = {CASE: validation.CASES[CASE]}
+    validation.measurements = lambda case, quick=False: few
+    return validation, few
+
+
+def test_published_and_calibrated_columns(few_points, monkeypatch, capsys, tmp_path):
+    validation, few = few_points
+    printed = run(validation, monkeypatch, capsys, tmp_path)
+    assert max(len(line.rstrip()) for line in printed.splitlines() if CASE in line) <= 80
+    published, calibrated, *targets = rows(tmp_path / "summary.csv")
+    assert (published["geometry"], float(published["twist"])) == ("published", 0.0)
+    assert float(calibrated["twist"]) == pytest.approx(
+        calibrated_twist_deg(load_propeller(CASE), few.static), abs=1e-9
+    )
+    assert float(calibrated["static CT, mean"]) == pytest.approx(0.0, abs=0.01)
+    assert [target["geometry"] for target in targets] == ["published", "calibrated"]
+
+    points = rows(tmp_path / f"{CASE}.csv")
+    assert len(points) == 4
+    last = analyze(
+        load_propeller(CASE), rpm=float(points[-1]["rpm"]),
+        speed=float(points[-1]["J"]) * float(points[-1]["rpm"]) / 60.0 * 0.2794,
+        twist_offset_deg=float(calibrated["twist"]),
+    ).coefficients  # fmt: skip
+    assert float(points[-1]["CT calibrated"]) == pytest.approx(float(last.CT), rel=1e-9)
+    assert float(points[-1]["CT measured"]) == few.dynamic.CT[-1]
+    for figure in (f"{CASE}.png", f"{CASE}_static.png"):
+        assert (tmp_path / figure).read_bytes()[16:20] == (1200).to_bytes(4, "big")
+
+
+def test_quick_takes_points_of_every_kind(study):
+    tunnel = study("aerodynamic_validation").measurements(CASE, quick=True)
+    assert 2 <= tunnel.static.rpm.size <= 4
+    assert tunnel.dynamic.J.min() <= 0.5 < tunnel.dynamic.J.max()
+
+
+@pytest.mark.slow
+def test_sensitivities_and_the_twist_each_point_needs(
+    few_points, study, monkeypatch, capsys, tmp_path
+):
+    validation, few = few_points
+    sensitivity = study("aerodynamic_sensitivity")
+    sensitivity.PITCH = {CASE: sensitivity.PITCH[CASE]}
+    sensitivity.measurements = validation.measurements
+    every = sensitivity.variants
+    chosen = {"nothing", "twist +1 deg", "wake at V + 1.5 w"}
+    sensitivity.variants = lambda *of: (one for one in every(*of) if one[0] in chosen)
+    printed = run(sensitivity, monkeypatch, capsys, tmp_path, "--quick")
+    assert "n_crit is left out" in printed
+    as_is, twisted, wake = rows(tmp_path / f"{CASE}.csv")
+    # Calibrated, a blade of other twist is the same blade.
+    assert float(twisted["twist"]) == pytest.approx(float(as_is["twist"]) - 1.0, abs=2e-3)
+    assert float(twisted["then CT"]) == pytest.approx(float(as_is["then CT"]), abs=0.02)
+    # A wake that leaves faster induces less.
+    assert float(wake["static CT"]) > float(as_is["static CT"]) + 5.0
+    needed = rows(tmp_path / f"{CASE}_twist_needed.csv")
+    assert len(needed) == few.static.rpm.size + (few.dynamic.J <= 0.5).sum()
+
+
+def test_wake_at_v_plus_w_is_the_solver_s_own(few_points, study):
+    _, few = few_points
+    sensitivity = study("aerodynamic_sensitivity")
+    propeller = load_propeller(CASE)
+    for points in (few.static, few.dynamic):
+        own = sensitivity.computed(propeller, points, 0.5)
+        same = sensitivity.computed_with_wake(propeller, points, 0.5, transport=1.0)
+        np.testing.assert_allclose((same.CT, same.CP), (own.CT, own.CP), rtol=1e-4)
+
+
+def test_hover_noise_table_is_that_of_its_tones(study, monkeypatch, capsys, tmp_path):
+    hover = study("hover_noise")
+    printed = run(hover, monkeypatch, capsys, tmp_path)
+    assert "4200 rpm: thrust" in printed
+    table = rows(tmp_path / "hover_noise.csv")
+    assert len(table) == 17
+    found = analyze(
+        hover.PROPELLER, rpm=4200, density=hover.DENSITY, observers=[(1.905, -45.0)]
+    ).to_dict()["observers"][0]["spl_bpf_db"]
+    (row,) = (row for row in table if (row["rpm"], row["elevation, deg"]) == ("4200", "-45.0"))
+    assert float(row["computed, dB"]) == pytest.approx(found, abs=0.006)
+    assert row["thesis: size of error, dB"] == "1.82"
+    assert (tmp_path / "directivity.png").read_bytes()[16:20] == (1200).to_bytes(4, "big")
+
+
+def test_loads_that_need_no_scaling_keep_their_tone(study):
+    hover = study("hover_noise")
+    found = analyze(hover.PROPELLER, rpm=4200, density=hover.DENSITY, observers=[(1.905, -45.0)])
+    (same,) = hover.scaled_tone(found, 1.0, 1.0)
+    assert same == pytest.approx(found.to_dict()["observers"][0]["spl_bpf_db"], abs=1e-9)
