@@ -245,6 +245,9 @@ def analyze(
         polars = polars or polars_for(propeller)
         sections = viscous_sections(polars, blade, section_radii, SOUND_SPEED, float(stall_delay))
     radius = 0.5 * propeller.diameter
+    points = np.asarray(observers, float).reshape(-1, 2)
+    positions = arc(points[:, 0], points[:, 1])
+    require_outside_rotor(positions, radius)
     air = float(speed), float(density)
     if thrust is not None:
         bounds = rotation_bounds(radius, speed)
@@ -260,9 +263,6 @@ def analyze(
         steady = solve_steady(nodes, propeller.n_blades, radius, omega, *air, sections)
     if sections is not None and polars is not None:
         _warn_outside_polars(polars, sections, blade, stations, steady, float(density))
-    points = np.asarray(observers, float).reshape(-1, 2)
-    positions = arc(points[:, 0], points[:, 1])
-    require_outside_rotor(positions, radius)
     heard = tones(
         panels,
         steady.point_loads,

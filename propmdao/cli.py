@@ -8,37 +8,19 @@ from __future__ import annotations
 
 import argparse
 import contextlib
-import json
 import math
 import os
 import sys
 from collections.abc import Sequence
-from typing import Any, NoReturn
+from typing import NoReturn
 
 import propmdao
+from propmdao.analyze_command import add_analyze
+from propmdao.json_output import print_json
 from propmdao.sweep_command import add_sweep
 from propmdao.wopwop_command import add_wopwop
 
 MAX_RPM_VALUES = 1000
-
-ANALYZE_DESCRIPTION = """\
-Thrust, torque and noise of a propeller in hover (speed 0) or axial flight.
-
-Steady vortex lattice with a wake carried by the flow it induces, then tones by Farassat's
-Formulation 1A: thickness and loading noise of the full blade surface, heard by observers that fly
-along. Not included: viscous drag (torque and power come out low) and broadband noise, so oaspl_dba
-is of the tones only.
-"""
-
-ANALYZE_EXAMPLES = """\
-examples:
-  propmdao analyze apcsf_11x4.7 --rpm 4200 --speed 8
-  propmdao analyze apcsf_11x4.7 --thrust 1.5 --speed 8 --arc 1.905 -45
-  propmdao analyze my_blade.toml --rpm 3000:5000:500 --arc 1.905 -45 0 45 --json
-
-CT = T/(rho n^2 D^4), CQ = Q/(rho n^2 D^5), CP = 2 pi CQ, J = V/(n D), eta = J CT/CP, n in rev/s.
-Levels are in dB re 20 uPa, rms. SI units throughout. Exit status: 0, or 2 with one line on stderr.
-"""
 
 
 class _Parser(argparse.ArgumentParser):
@@ -106,67 +88,7 @@ def build_parser() -> argparse.ArgumentParser:
     listing.set_defaults(command=_list)
     listing.add_argument("--json", action="store_true", help="print JSON instead of a table")
 
-    analysis = commands.add_parser(
-        "analyze",
-        help="thrust, torque and noise at given rpm or thrust",
-        description=ANALYZE_DESCRIPTION,
-        epilog=ANALYZE_EXAMPLES,
-        formatter_class=argparse.RawDescriptionHelpFormatter,
-        allow_abbrev=False,
-    )
-    analysis.set_defaults(command=_analyze)
-    analysis.add_argument(
-        "propeller",
-        metavar="PROPELLER",
-        help="name from 'propmdao list', or path of a propeller file (TOML)",
-    )
-    drive = analysis.add_mutually_exclusive_group(required=True)
-    drive.add_argument(
-        "--rpm",
-        action="append",
-        type=_rpm,
-        metavar="N",
-        help="rotation speed [rev/min], or a range START:STOP:STEP that includes STOP; may be"
-        " repeated. Ranges and repetition give a list, of one result per value",
-    )
-    drive.add_argument(
-        "--thrust",
-        type=_number,
-        metavar="N",
-        help="find the rotation speed that gives this thrust [N]",
-    )
-    analysis.add_argument(
-        "--speed",
-        type=_number,
-        default=0.0,
-        metavar="M_S",
-        help="flight speed [m/s], default 0: hover",
-    )
-    analysis.add_argument(
-        "--rho",
-        type=_number,
-        default=1.225,
-        metavar="KG_M3",
-        help="air density [kg/m3], default 1.225",
-    )
-    analysis.add_argument(
-        "--twist-offset",
-        type=_number,
-        default=0.0,
-        metavar="DEG",
-        help="added to the blade angle everywhere [deg], default 0",
-    )
-    analysis.add_argument(
-        "--arc",
-        action="append",
-        nargs="+",
-        type=_number,
-        default=[],
-        metavar=("RADIUS", "ELEVATION"),
-        help="observers at RADIUS [m] from the hub and each ELEVATION [deg] from the rotor plane,"
-        " negative below it (wake side); may be repeated for other radii",
-    )
-    analysis.add_argument("--json", action="store_true", help="print JSON instead of tables")
+    add_analyze(commands, _number, _rpm, _arc)
     add_sweep(commands, _number, _rpm, _arc)
     add_wopwop(commands)
     return parser
@@ -179,38 +101,11 @@ def _list(options: argparse.Namespace) -> None:
     propellers = [load_propeller(name) for name in catalog_names()]
     if options.json:
         keys = ("name", "diameter", "n_blades", "source")
-        _print_json([{key: getattr(propeller, key) for key in keys} for propeller in propellers])
+        print_json([{key: getattr(propeller, key) for key in keys} for propeller in propellers])
     else:
         from propmdao import report
 
         report.print_catalog(propellers)
-
-
-def _analyze(options: argparse.Namespace) -> None:
-    observers = [observer for arc in options.arc for observer in _arc(arc)]
-    # Slow to import, so only once the arguments are known to be good.
-    from propmdao.analysis import analyze
-    from propmdao.propeller import load_propeller
-
-    propeller = load_propeller(options.propeller)
-    analyses = [
-        analyze(
-            propeller,
-            rpm=rpm,
-            thrust=options.thrust,
-            speed=options.speed,
-            density=options.rho,
-            twist_offset_deg=options.twist_offset,
-            observers=observers,
-        ).to_dict()
-        for rpm in _rpm_values(options.rpm)
-    ]
-    if options.json:
-        _print_json(analyses if _is_sweep(options.rpm) else analyses[0])
-    else:
-        from propmdao import report
-
-        report.print_analyses(propeller, options.twist_offset, analyses)
 
 
 def _number(text: str) -> float:
@@ -244,17 +139,6 @@ def _rpm(text: str) -> float | list[float]:
     return [start + i * step for i in range(n_steps + 1)]
 
 
-def _rpm_values(given: list[float | list[float]] | None) -> list[float | None]:
-    """All rpm in the order given; one None where thrust is given instead."""
-    if given is None:
-        return [None]
-    return [rpm for item in given for rpm in (item if isinstance(item, list) else [item])]
-
-
-def _is_sweep(given: list[float | list[float]] | None) -> bool:
-    return given is not None and (len(given) > 1 or isinstance(given[0], list))
-
-
 def _arc(values: list[float]) -> list[tuple[float, float]]:
     """Observers (radius, elevation) of one ``--arc``."""
     if len(values) < 2:
@@ -264,22 +148,6 @@ def _arc(values: list[float]) -> list[tuple[float, float]]:
         )
     radius, *elevations = values
     return [(radius, elevation) for elevation in elevations]
-
-
-def _print_json(value: Any) -> None:
-    json.dump(_plain(value), sys.stdout, indent=2, allow_nan=False)
-    print()
-
-
-def _plain(value: Any) -> Any:
-    """Copy with null for what JSON has no number for, and 0 for a zero that has a sign."""
-    if isinstance(value, dict):
-        return {key: _plain(item) for key, item in value.items()}
-    if isinstance(value, list):
-        return [_plain(item) for item in value]
-    if isinstance(value, float):
-        return value + 0.0 if math.isfinite(value) else None
-    return value
 
 
 if __name__ == "__main__":

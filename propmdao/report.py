@@ -13,10 +13,8 @@ from rich.table import Table
 from propmdao.propeller import Propeller
 
 # What the numbers leave out stands below them, where it is read.
-NOTES = (
-    "Inviscid lattice: no profile drag, so torque and power are low and eta is high.",
-    "Tones only, no broadband noise: the propeller is louder, above all in dBA.",
-)
+INVISCID = "Inviscid lattice: no profile drag, so torque and power are low and eta is high."
+TONES_ONLY = "Tones only: with broadband noise (--broadband) it is louder, above all in dBA."
 
 
 def print_catalog(propellers: Iterable[Propeller]) -> None:
@@ -66,15 +64,21 @@ def print_analyses(
     if twist_offset_deg:
         console.print(f"Twist offset {twist_offset_deg:+.4g} deg: not the geometry as described.")
     console.print(_operating_points(analyses))
-    if any(analysis["observers"] for analysis in analyses):
+    heard = [observer for analysis in analyses for observer in analysis["observers"]]
+    if heard:
         console.print(_levels(analyses))
     else:
         console.print("No observers: --arc RADIUS ELEVATION... adds their noise.\n")
     for analysis in analyses:
         if not analysis["converged"]:
-            console.print(f"NOT CONVERGED at {analysis['rpm']:.1f} rpm: do not use these numbers.")
-    for note in NOTES:
-        console.print(note)
+            console.print(
+                f"NOT CONVERGED at {analysis['rpm']:.1f} rpm, do not use these numbers: "
+                f"{analysis['failure']}."
+            )
+    if not first["viscous"]:
+        console.print(INVISCID)
+    if heard and "broadband" not in heard[0]:
+        console.print(TONES_ONLY)
 
 
 def _operating_points(analyses: Iterable[dict[str, Any]]) -> Table:
@@ -97,7 +101,7 @@ def _operating_points(analyses: Iterable[dict[str, Any]]) -> Table:
     return table
 
 
-def _levels(analyses: Iterable[dict[str, Any]]) -> Table:
+def _levels(analyses: Sequence[dict[str, Any]]) -> Table:
     table = _table()
     columns = {
         "radius": ("radius\nm", ".4g"),
@@ -106,8 +110,13 @@ def _levels(analyses: Iterable[dict[str, Any]]) -> Table:
         "oaspl_db": ("OASPL\ndB", ".1f"),
         "oaspl_thickness_db": ("thickness\ndB", ".1f"),
         "oaspl_loading_db": ("loading\ndB", ".1f"),
-        "oaspl_dba": ("tones\ndBA", ".1f"),
+        "oaspl_broadband_db": ("broadband\ndB", ".1f"),
+        "oaspl_dba": ("total\ndBA", ".1f"),
     }
+    heard = [observer for analysis in analyses for observer in analysis["observers"]]
+    if "broadband" not in heard[0]:
+        columns["oaspl_dba"] = ("tones\ndBA", ".1f")
+    columns = {key: column for key, column in columns.items() if key in heard[0]}
     table.add_column("rpm", justify="right")
     for heading, _ in columns.values():
         table.add_column(heading, justify="right")

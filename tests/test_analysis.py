@@ -52,6 +52,33 @@ def test_hover_and_standstill_are_ordinary():
     json.dumps(still, allow_nan=False)
 
 
+def test_viscosity_takes_thrust_and_adds_power():
+    viscous, inviscid = (run(rpm=4200.0, speed=8.0, viscous=on) for on in (True, False))
+    assert viscous["viscous"] and not inviscid["viscous"]
+    assert viscous["thrust"] < 0.95 * inviscid["thrust"]
+    assert viscous["eta"] < 0.9 * inviscid["eta"]
+    without_delay = run(rpm=4200.0, stall_delay=False)
+    assert without_delay["thrust"] < run(rpm=4200.0)["thrust"]
+
+
+def test_broadband_noise_adds_to_the_tones():
+    where = {"rpm": 4200.0, "observers": [(1.905, -45.0), (1.905, 0.0)]}
+    tones, both = run(**where), run(**where, broadband=True)
+    for alone, total in zip(tones["observers"], both["observers"], strict=True):
+        assert total["harmonics"] == alone["harmonics"]
+        noise = total["oaspl_broadband_db"]
+        energy = 10 * np.log10(10 ** (alone["oaspl_db"] / 10) + 10 ** (noise / 10))
+        assert total["oaspl_db"] == pytest.approx(energy)
+        bands = [band["spl_db"] for band in total["third_octave"]]
+        assert 10 * np.log10(sum(10 ** (level / 10) for level in bands)) == pytest.approx(energy)
+        assert total["oaspl_dba"] > alone["oaspl_dba"] + 5.0
+        mechanisms = [key for key in total["broadband"][0] if key.endswith("_db")]
+        for band in total["broadband"]:
+            powers = [10 ** (band[key] / 10) for key in mechanisms if key != "spl_db"]
+            assert band["spl_db"] == pytest.approx(10 * np.log10(sum(powers)), abs=1e-6)
+    json.dumps(both, allow_nan=False)
+
+
 def test_twist_offset_turns_the_whole_blade():
     by_offset = run(rpm=4200.0, speed=8.0, twist_offset_deg=2.0)
     assert by_offset["thrust"] > 1.3 * run(rpm=4200.0, speed=8.0)["thrust"]
@@ -67,7 +94,7 @@ def test_twist_offset_turns_the_whole_blade():
         ({"thrust": 0.0}, "thrust must be positive; it is 0 N"),
         ({"rpm": 4000.0, "speed": -2.0}, "speed must be 0 m/s or more; it is -2"),
         ({"rpm": 4000.0, "density": 0.0}, "density must be positive; it is 0 kg/m3"),
-        ({"rpm": 4000.0, "observers": [(0.1, 0.0)]}, "observer radius must be larger than"),
+        ({"rpm": 4000.0, "observers": [(0.1, 0.0)]}, "observer 1 is inside the source region"),
         ({"rpm": 40000.0}, "relative tip Mach number must be below 1"),
         ({"thrust": 900.0}, "thrust 900 N is out of reach at 0 m/s"),
         ({"thrust": 1.0, "speed": 310.0}, "speed must be below 306"),

@@ -41,7 +41,9 @@ class Recorder:
             **point,
             "thrust": 1.5,
             "eta": math.nan,
+            "viscous": asked["viscous"],
             "converged": True,
+            "failure": None,
             "observers": [
                 {"elevation_deg": elevation, "radius": radius, **levels}
                 | {"oaspl_thickness_db": -math.inf, "harmonics": [], "third_octave": []}
@@ -103,9 +105,11 @@ def test_analyze_passes_on_what_was_asked(
 ) -> None:
     status = main(
         f"analyze {PROPELLER} --thrust 1.2 --speed 8 --rho 1.1 --twist-offset -1.5"
-        " --arc 1.905 -45 -.5 45 --arc 3 0 --json".split()
+        " --arc 1.905 -45 -.5 45 --arc 3 0 --broadband --json".split()
     )
     assert status == 0
+    polars = [call.pop("polars") for call in recorder.calls]
+    assert polars[0] is not None
     assert recorder.calls == [
         {
             "rpm": None,
@@ -113,6 +117,9 @@ def test_analyze_passes_on_what_was_asked(
             "speed": 8.0,
             "density": 1.1,
             "twist_offset_deg": -1.5,
+            "viscous": True,
+            "stall_delay": True,
+            "broadband": True,
             "observers": [(1.905, -45.0), (1.905, -0.5), (1.905, 45.0), (3.0, 0.0)],
         }
     ]
@@ -121,14 +128,37 @@ def test_analyze_passes_on_what_was_asked(
 def test_defaults_are_hover_in_standard_air_without_observers(recorder: Recorder) -> None:
     assert main(["analyze", PROPELLER, "--rpm", "4000"]) == 0
     (asked,) = recorder.calls
+    assert asked.pop("polars") is not None
     assert asked == {
         "rpm": 4000.0,
         "thrust": None,
         "speed": 0.0,
         "density": 1.225,
         "twist_offset_deg": 0.0,
+        "viscous": True,
+        "stall_delay": True,
+        "broadband": False,
         "observers": [],
     }
+
+
+def test_sections_can_be_left_out_or_stall_as_in_two_dimensions(recorder: Recorder) -> None:
+    assert main(["analyze", PROPELLER, "--rpm", "4000", "--inviscid"]) == 0
+    assert main(["analyze", PROPELLER, "--rpm", "4000", "--no-stall-delay"]) == 0
+    inviscid, no_delay = recorder.calls
+    assert inviscid["viscous"] is False and inviscid["polars"] is None
+    assert no_delay["viscous"] is True and no_delay["stall_delay"] is False
+
+
+def test_polars_of_ones_own_go_before_the_catalogue(recorder: Recorder, tmp_path: Path) -> None:
+    lines = [" Mach = 0.000  Re = 0.100 e 6  Ncrit = 9.000", " alpha CL CD CDp CM", " --- --- ---"]
+    lines += [f"{a} {0.1 * a + 0.3:.3f} 0.0200 0.0100 -0.0500" for a in range(-10, 13)]
+    file = tmp_path / "mine.txt"
+    file.write_text("\n".join(lines) + "\n")
+    assert main(["analyze", PROPELLER, "--rpm", "4000", "--polar", "e63", str(file)]) == 0
+    assert main(["analyze", PROPELLER, "--rpm", "4000"]) == 0
+    own, shipped = (call["polars"] for call in recorder.calls)
+    assert own.values.shape != shipped.values.shape
 
 
 @pytest.mark.parametrize(
@@ -169,8 +199,10 @@ def test_tables_say_what_is_left_out_and_fit_eighty_columns(
     monkeypatch.setenv("COLUMNS", "80")
     assert main(["analyze", PROPELLER, "--rpm", "12345", "--arc", "1.905", "-45"]) == 0
     output = capsys.readouterr().out
-    assert "no profile drag" in output
-    assert "no broadband noise" in output
+    assert "Tones only" in output
+    assert "profile drag" not in output
+    assert main(["analyze", PROPELLER, "--rpm", "4000", "--inviscid"]) == 0
+    assert "no profile drag" in capsys.readouterr().out
     assert "…" not in output
     assert "nan" not in output and "inf" not in output
 
@@ -199,6 +231,10 @@ def test_a_twist_offset_is_said_above_the_table(
         (f"analyze {PROPELLER} --rpm 4000 --arc", "--arc"),
         (f"analyze {PROPELLER} --rpm 4000 --arc 1.905", "at least one elevation"),
         (f"analyze {PROPELLER} --rpm 4000 --ar 1.905 0", "unrecognized arguments"),
+        (f"analyze {PROPELLER} --rpm 4000 --polar e63", "--polar e63 has no file"),
+        (f"analyze {PROPELLER} --rpm 4000 --polar e63 no_such.txt", "no_such.txt"),
+        (f"analyze {PROPELLER} --rpm 4000 --polar e63 a.c81 b.c81", "a C81 file stands alone"),
+        (f"analyze {PROPELLER} --rpm 4000 --inviscid --no-stall-delay", "do not go along"),
         ("analyze apcsf_11x47 --rpm 4000", PROPELLER),
         ("analyze no_such_file.toml --rpm 4000", "no_such_file.toml"),
     ],
@@ -225,7 +261,8 @@ def test_keys_are_those_promised() -> None:
     assert (result.returncode, result.stderr) == (0, "")
     point = json.loads(result.stdout)
     assert list(point) == (
-        "rpm speed rho J thrust torque shaft_power CT CQ CP eta converged observers".split()
+        "rpm speed rho J thrust torque shaft_power CT CQ CP eta viscous converged failure observers"
+        "".split()
     )
     assert [observer["elevation_deg"] for observer in point["observers"]] == [-45, 0]
     for observer in point["observers"]:
@@ -262,7 +299,7 @@ def test_rpm_0_gives_zero_loads(capsys: pytest.CaptureFixture[str]) -> None:
         ("--rpm -5", "rpm must be"),
         ("--rpm 4000 --speed -1", "speed must be"),
         ("--rpm 4000 --rho 0", "density must be positive"),
-        ("--rpm 4000 --arc 0.1 0", "radius"),
+        ("--rpm 4000 --arc 0.1 0", "inside the source region: 0.1 m"),
         ("--rpm 30000", "Mach"),
         ("--thrust -1", "thrust must be positive"),
         ("--thrust 1000", "thrust 1000 N is out of reach"),
@@ -314,6 +351,7 @@ def test_help_explains_every_option(capsys: pytest.CaptureFixture[str]) -> None:
         main(["analyze", "--help"])
     assert exit_.value.code == 0
     text = capsys.readouterr().out
-    for option in ("--rpm", "--thrust", "--speed", "--rho", "--twist-offset", "--arc", "--json"):
+    options = "--rpm --thrust --speed --rho --twist-offset --inviscid --no-stall-delay --polar"
+    for option in f"{options} --arc --broadband --json".split():
         assert option in text
     assert "examples:" in text

@@ -23,7 +23,7 @@ from propmdao.geometry.airfoil_library import find_airfoil
 
 #: Maximum camber and thickness over chord of the tables; negative camber follows by symmetry.
 CAMBER: FloatArray = np.array([0.0, 0.015, 0.03, 0.045, 0.06, 0.075, 0.09])
-THICKNESS: FloatArray = np.array([0.03, 0.045, 0.065, 0.09, 0.12, 0.155, 0.19])
+THICKNESS: FloatArray = np.array([0.03, 0.045, 0.065, 0.09, 0.12, 0.155, 0.19, 0.22])
 #: Blends of E63 and Clark-Y among the shapes, by share of Clark-Y.
 CLARKY_SHARES = {"e63": 0.0, "e63-clarky": 0.5, "clarky": 1.0}
 #: Shapes of the file: the NACA 4-digit series with its maximum camber at 0.4 c, and the blends.
