@@ -1,0 +1,54 @@
+"""APC-SF 11x4.7 in hover against the microphones of an anechoic chamber, nothing fitted.
+
+Zawodny, Boyd and Burley (AHS Forum 72, 2016), level of the tone at blade passage, three rotation
+speeds and five elevations, read off a figure (+-0.3 dB). Aimed at: 1.0 dB in the mean, 2.0 dB at
+most. Bands are two-sided around the errors found.
+"""
+
+import importlib.util
+
+import numpy as np
+import pytest
+
+pytest.importorskip("matplotlib")  # which the study draws with
+pytestmark = pytest.mark.validation
+
+
+@pytest.fixture(scope="module")
+def study(checkout):
+    spec = importlib.util.spec_from_file_location(
+        "hover_noise", checkout / "studies" / "hover_noise.py"
+    )
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+@pytest.fixture(scope="module")
+def heard(study):
+    return study.hover_tones()
+
+
+def test_levels_at_blade_passage_are_two_decibels_low(heard):
+    error = heard.spl_db - heard.measured_db
+    assert 1.85 < np.abs(error).mean() < 2.15
+    assert error.mean() == pytest.approx(-np.abs(error).mean())  # everywhere too quiet
+    assert 3.4 < np.abs(error).max() < 3.75
+
+
+def test_loads_that_fall_short_are_half_of_that(heard):
+    # Thrust 3 to 9 % and torque 10 to 17 % short; with the measured ones the rest is this.
+    short = heard.loads / heard.measured_loads - 1.0
+    assert short[:, 0] == pytest.approx([-0.028, -0.053, -0.091], abs=0.01)
+    assert short[:, 1] == pytest.approx([-0.101, -0.132, -0.169], abs=0.01)
+    error = heard.scaled_db - heard.measured_db
+    assert 0.85 < np.abs(error).mean() < 1.1
+    assert 2.5 < np.abs(error).max() < 2.9
+    assert np.abs(error[1]).max() < 1.0  # 4200 rpm
+
+
+def test_measured_levels_are_not_those_of_a_smooth_law(study, heard):
+    # Steady loads make a level that follows a power of rotation speed: no model reaches 1.6 dB.
+    assert 1.5 < study.off_power_law_db(heard) < 1.7
+    smooth = np.diff(heard.spl_db, axis=0) / np.diff(np.log(heard.rpm))[:, None]
+    assert (np.abs(smooth[1] / smooth[0] - 1.0) < 0.2).all()
