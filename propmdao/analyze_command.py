@@ -155,9 +155,9 @@ def _analyze(options: argparse.Namespace) -> None:
                 f"--polar {airfoil}: {propeller.name} has no such airfoil; it has"
                 f" {', '.join(dict.fromkeys(names))}"
             )
-    polars = None if options.inviscid else polars_for(propeller, own)
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
+        polars = None if options.inviscid else polars_for(propeller, own)
         analyses = [
             analyze(
                 propeller,

@@ -16,6 +16,7 @@ from propmdao.aerodynamics.polars.propeller_polars import polars_for
 from propmdao.aerodynamics.polars.table import (
     PolarError,
     PolarRangeWarning,
+    PolarSubstituteWarning,
     PolarTable,
     SectionCurves,
     curve_coefficients,
@@ -29,6 +30,7 @@ __all__ = [
     "Polar",
     "PolarError",
     "PolarRangeWarning",
+    "PolarSubstituteWarning",
     "PolarTable",
     "SectionCurves",
     "SectionPolars",

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import functools
-import re
+import warnings
 from collections.abc import Mapping
 from pathlib import Path
 
@@ -26,9 +26,14 @@ from propmdao.aerodynamics.polars.shipped import (
     shape,
     shipped_tables,
 )
-from propmdao.aerodynamics.polars.table import PolarError, PolarTable
+from propmdao.aerodynamics.polars.table import PolarError, PolarSubstituteWarning, PolarTable
+from propmdao.geometry.airfoil import Airfoil
 from propmdao.geometry.airfoil_library import find_airfoil
 from propmdao.propeller import Propeller
+
+# What coordinates with four to six digits leave of a shape scaled to a maximum of 1.
+_SAME, _FLAT = 0.02, 1.0e-4
+_PLAIN = ("naca4", "e63", "clarky")  # shapes of the catalogue that are no blends
 
 
 def polars_for(propeller: Propeller, own: Mapping[str, PolarTable] | None = None) -> SectionPolars:
@@ -47,13 +52,18 @@ def polars_for(propeller: Propeller, own: Mapping[str, PolarTable] | None = None
     -------
     SectionPolars
         Polars of E63, Clark-Y, their blends and NACA 4-digit sections with their camber at 0.4 c
-        from the catalogue; of other sections from NeuralFoil, where it is installed (about 15 s
-        per airfoil).
+        from the catalogue, whatever their names; of other sections from NeuralFoil, where it is
+        installed (about 15 s per airfoil).
 
     Raises
     ------
     PolarError
-        If an airfoil has no polars; the message says how to supply them.
+        If a table of one's own is no table of one section.
+
+    Warns
+    -----
+    PolarSubstituteWarning
+        If an airfoil has no polars and NACA 4-digit ones stand in.
     """
     names = [name for _, name in propeller.airfoils]
     sources: list[str] = []
@@ -94,17 +104,30 @@ def _own_table(name: str, own: Mapping[str, PolarTable]) -> PolarTable | None:
 
 def _catalogue_shape(name: str) -> str:
     """Shape of the catalogue that an airfoil has, or its own name if NeuralFoil can make it."""
-    if name in CLARKY_SHARES:
-        return name
-    if re.fullmatch(r"naca(00|\d4)\d\d", name):
-        return "naca4"
+    section = find_airfoil(name)
+    for known in _PLAIN:
+        if _alike(section, *shape(known)):
+            return known
     if neuralfoil_installed():
         return name
-    raise PolarError(
-        f"airfoil '{name}' has no polars in the catalogue: give polar files of it "
-        f"(polars_for(propeller, own={{'{Path(name).stem}': read_polars(...)}})), or install "
-        "NeuralFoil, which makes them: pip install 'propmdao[polars]'"
+    warnings.warn(
+        f"airfoil '{name}' has no polars in the catalogue: those of a NACA 4-digit section of its "
+        "camber and thickness stand in. Give polar files of it (--polar, or polars_for(propeller, "
+        f"own={{'{Path(name).stem}': read_polars(...)}})), or install NeuralFoil, which makes "
+        "them: pip install 'propmdao[polars]'",
+        PolarSubstituteWarning,
+        stacklevel=3,
     )
+    return "naca4"
+
+
+def _alike(section: Airfoil, camber: FloatArray, thickness: FloatArray) -> bool:
+    """Whether a section is a shape of the catalogue, whatever its camber and thickness."""
+    peak = np.abs(section.camber).max()
+    same_camber = peak < _FLAT or np.allclose(section.camber / peak, camber, atol=_SAME)
+    # A flat section has no camber line to compare: only the symmetric NACA shape may claim it.
+    same_thickness = np.allclose(section.thickness / section.thickness.max(), thickness, atol=_SAME)
+    return bool(same_camber and same_thickness)
 
 
 def _shape_weights(propeller: Propeller, sources: list[str]) -> dict[str, FloatArray]:

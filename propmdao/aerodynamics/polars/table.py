@@ -18,6 +18,10 @@ class PolarError(ValueError):
     """A polar cannot be found, read or made; the message is one line."""
 
 
+class PolarSubstituteWarning(UserWarning):
+    """Polars of another section stand in for those that are missing."""
+
+
 class PolarRangeWarning(UserWarning):
     """A section works outside its polars, which are held at their ends there."""
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import dataclasses
 import warnings
 from collections.abc import Callable
+from pathlib import Path
 
 import jax
 import jax.numpy as jnp
@@ -14,6 +15,7 @@ import pytest
 from propmdao.aerodynamics.polars import (
     PolarError,
     PolarRangeWarning,
+    PolarSubstituteWarning,
     PolarTable,
     blade_tables,
     polars_for,
@@ -26,7 +28,7 @@ from propmdao.aerodynamics.polars import propeller_polars as finding
 from propmdao.aerodynamics.polars.neuralfoil_tables import REYNOLDS, neuralfoil_polar
 from propmdao.aerodynamics.polars.shipped import shape, shipped_tables
 from propmdao.catalog import catalog_names
-from propmdao.geometry.airfoil import naca4
+from propmdao.geometry.airfoil import CHORD_FRACTION, naca4
 from propmdao.geometry.airfoil_library import find_airfoil
 from propmdao.geometry.blade import Blade, span_interpolation
 from propmdao.propeller import Propeller, load_propeller
@@ -170,12 +172,32 @@ def test_other_blends_count_by_camber(propeller: Callable[..., Propeller]) -> No
     np.testing.assert_allclose(weights[1], [e63 / (e63 + naca), naca / (e63 + naca)])
 
 
-def test_a_section_of_no_family_says_how_to_supply_polars(
+def test_where_a_section_has_no_polars_those_of_another_stand_in_and_it_is_said(
     propeller: Callable[..., Propeller], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(finding, "neuralfoil_installed", lambda: False)
-    with pytest.raises(PolarError, match=r"'naca2212' has no polars.*own=\{'naca2212'.*\[polars\]"):
-        polars_for(propeller((0.0, "naca2212")))
+    says = r"'naca2212' has no polars.*NACA 4-digit.*own=\{'naca2212'.*\[polars\]"
+    with pytest.warns(PolarSubstituteWarning, match=says):
+        found = polars_for(propeller((0.0, "naca2212")))
+    np.testing.assert_array_equal(found.values, polars_for(propeller((0.0, "naca2412"))).values)
+
+
+@pytest.mark.parametrize("known", ["e63", "clarky", "naca4409", "naca0012"])
+def test_coordinates_of_a_known_shape_have_its_polars(
+    propeller: Callable[..., Propeller],
+    monkeypatch: pytest.MonkeyPatch,
+    tmp_path: Path,
+    known: str,
+) -> None:
+    monkeypatch.setattr(finding, "neuralfoil_installed", lambda: False)
+    section = find_airfoil(known)
+    x = np.append(CHORD_FRACTION[::-1], CHORD_FRACTION[1:])
+    half = 0.5 * section.thickness
+    z = np.append((section.camber + half)[::-1], (section.camber - half)[1:])
+    file = tmp_path / "mine.dat"
+    np.savetxt(file, np.transpose([x, z]), fmt="%.5f", header="mine", comments="")
+    found = polars_for(propeller((0.0, str(file))))
+    np.testing.assert_array_equal(found.values, polars_for(propeller((0.0, known))).values)
 
 
 def test_a_users_table_goes_before_the_catalogue(
