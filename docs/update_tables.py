@@ -1,30 +1,40 @@
 """Write the tables of docs/verification.md anew from the program as it is.
 
-Run it from the repository: ``python docs/update_tables.py``. Each table stands between two comment
-lines that name it; the text around them is written by hand.
+Run it from the repository: ``python docs/update_tables.py``, or with the names of some tables. Each
+table stands between two comment lines that name it; the text around them is written by hand. All of
+them take about a quarter of an hour; the sensitivities need NeuralFoil (the extra ``polars``).
 """
 
 from __future__ import annotations
 
+import argparse
 import dataclasses
 import re
-import tomllib
+import sys
 from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 
 import numpy as np
 
-from propmdao.aerodynamics.coefficients import coefficients
-from propmdao.aerodynamics.lattice_loads import lattice_geometry
-from propmdao.aerodynamics.steady import WAKE_AGES, Flow, loads_at, solve_steady
+from propmdao.aerodynamics.polars import polars_for
+from propmdao.aerodynamics.section_coupling import viscous_sections
+from propmdao.aerodynamics.steady import WAKE_AGES, solve_steady
+from propmdao.aerodynamics.strips import strip_radii
 from propmdao.aerodynamics.wake import wake_azimuths
-from propmdao.analysis import analyze
+from propmdao.analysis import SOUND_SPEED, analyze
 from propmdao.geometry.blade import Blade, span_interpolation
 from propmdao.geometry.lattice import lattice_nodes, lattice_span
 from propmdao.propeller import Propeller, load_propeller
+from propmdao.wind_tunnel import Points, calibrated_twist_deg, computed
 
 HERE = Path(__file__).parent
-MEASURED = HERE.parent / "studies" / "measurements" / "uiuc_apcsf_11x4.7.toml"
+sys.path.insert(0, str(HERE.parent / "studies"))
+import aerodynamic_sensitivity  # noqa: E402
+import aerodynamic_validation  # noqa: E402
+import hover_noise as hover_noise_study  # noqa: E402
+
+SLOW_FLYER = load_propeller("apcsf_11x4.7")
 RADIUS, DENSITY = 0.1397, 1.225
 RAD_PER_S = np.pi / 30.0
 DEG = np.pi / 180.0
@@ -32,47 +42,37 @@ DEG = np.pi / 180.0
 Rows = list[tuple[str, ...]]
 
 
-def slow_flyer(airfoil: str | None = None, twist_deg: float = 0.0) -> Propeller:
-    """APC-SF 11x4.7, with one airfoil all over the span and a twist offset if asked for."""
-    propeller = load_propeller("apcsf_11x4.7")
-    if airfoil is not None:
-        propeller = dataclasses.replace(propeller, airfoils=((0.15, airfoil),))
-    return dataclasses.replace(propeller, beta_deg=propeller.beta_deg + twist_deg)
-
-
-def lattice(propeller: Propeller, n_chordwise: int = 8, n_spanwise: int = 24):
-    """Corner points of a propeller's lattice."""
-    stations = propeller.r_over_R
-    span = span_interpolation(stations, lattice_span(stations[0], n_spanwise))
-    return lattice_nodes(Blade.from_propeller(propeller), span, n_chordwise)
-
-
-def solve(nodes, rpm: float, speed: float, ages: np.ndarray = WAKE_AGES):
-    """Steady solution of a two-bladed rotor."""
-    return solve_steady(nodes, 2, RADIUS, rpm * RAD_PER_S, speed, DENSITY, ages)
+def solve(speed: float, n_chordwise: int = 8, n_spanwise: int = 24, ages: np.ndarray = WAKE_AGES):
+    """Steady solution of the slow flyer at 4200 rpm on a lattice, in a wake."""
+    blade, stations = Blade.from_propeller(SLOW_FLYER), SLOW_FLYER.r_over_R
+    radii = lattice_span(stations[0], n_spanwise), strip_radii(stations[0], n_spanwise)
+    span, strips = (span_interpolation(stations, of) for of in radii)
+    nodes = lattice_nodes(blade, span, n_chordwise)
+    sections = viscous_sections(polars_for(SLOW_FLYER), blade, strips, SOUND_SPEED)
+    return solve_steady(
+        nodes, 2, RADIUS, 4200.0 * RAD_PER_S, speed, DENSITY, sections, wake_ages=ages
+    )
 
 
 def lattice_convergence() -> Rows:
     """Thrust and torque for other numbers of panels, against the default 8 x 24."""
     rows: Rows = [("panels", "hover T", "hover Q", "8 m/s T", "8 m/s Q")]
-    base = {v: solve(lattice(slow_flyer()), 4200.0, v) for v in (0.0, 8.0)}
+    base = {v: solve(v) for v in (0.0, 8.0)}
     for panels in ((4, 24), (6, 24), (12, 24), (16, 24), (8, 12), (8, 16), (8, 36), (8, 48)):
-        nodes = lattice(slow_flyer(), *panels)
-        cells = [change(solve(nodes, 4200.0, v), base[v]) for v in base]
+        cells = [change(solve(v, *panels), base[v]) for v in base]
         rows.append((f"{panels[0]} x {panels[1]}", *(c for pair in cells for c in pair)))
     return rows
 
 
 def wake_convergence() -> Rows:
     """Thrust and torque for other wakes, against the finest."""
-    nodes = lattice(slow_flyer())
     rows: Rows = [("turns", "steps, deg", "nodes", "hover T", "hover Q", "8 m/s T", "8 m/s Q")]
     finest = (16, 2, 1.03, 10)
-    base = {v: solve(nodes, 4200.0, v, _ages(*finest)) for v in (0.0, 8.0)}
+    base = {v: solve(v, ages=_ages(*finest)) for v in (0.0, 8.0)}
     for wake in ((4, 10, 1.1, 30), (6, 10, 1.1, 30), (8, 10, 1.1, 30), (12, 10, 1.1, 30),
                  (6, 15, 1.0, 15), (6, 10, 1.0, 10), (6, 5, 1.05, 15), finest):  # fmt: skip
         ages = _ages(*wake)
-        cells = [change(solve(nodes, 4200.0, v, ages), base[v]) for v in base]
+        cells = [change(solve(v, ages=ages), base[v]) for v in base]
         steps = f"{wake[1]} to {wake[3]}"
         rows.append((str(wake[0]), steps, str(len(ages)), *(c for pair in cells for c in pair)))
     return rows
@@ -90,75 +90,128 @@ def change(solution, base) -> tuple[str, str]:
     )
 
 
-def uiuc() -> Rows:
-    """CT and CP of APC-SF 11x4.7 at 4003 rpm against the wind tunnel, and what moves CT."""
-    run = next(r for r in tomllib.loads(MEASURED.read_text())["run"] if r["rpm"] == 4003)
-    rows: Rows = [
-        ("J", "CT UIUC", "CT", "error", "CP UIUC", "CP", "error",
-         "CT, +1 deg", "CT, E63 to the tip", "CT, rigid wake"),
-    ]  # fmt: skip
-    blade, twisted, e63 = (
-        lattice(slow_flyer(*change)) for change in ((), (None, 1.0), ("e63", 0.0))
-    )
-    for j, ct, cp in zip(run["J"], run["CT"], run["CP"], strict=True):
-        speed = j * run["rpm"] / 60.0 * 2.0 * RADIUS
-        own = _of(solve(blade, run["rpm"], speed), run["rpm"], speed)
-        others = [
-            float(_of(solve(nodes, run["rpm"], speed), run["rpm"], speed).CT)
-            for nodes in (twisted, e63)
-        ]
-        cells = [f"{j:.3f}", f"{ct:.4f}", f"{float(own.CT):.4f}", _error(own.CT, ct)]
-        cells += [f"{cp:.4f}", f"{float(own.CP):.4f}", _error(own.CP, cp)]
-        rigid = rigid_wake_ct(blade, run["rpm"], speed)
-        rows.append((*cells, *(f"{value:.4f}" for value in (*others, rigid))))
+def ideal_disk() -> Rows:
+    """Power over that of the ideal actuator disk at the same thrust."""
+    rows: Rows = [("J", "CT inviscid", "power / ideal", "CT viscous", "power / ideal")]
+    for j in (0.0, 0.1, 0.2, 0.3, 0.4):
+        cells = []
+        for viscous in (False, True):
+            speed = j * 4003 / 60.0 * SLOW_FLYER.diameter
+            of = analyze(SLOW_FLYER, rpm=4003.0, speed=speed, viscous=viscous).to_dict()
+            disk = 2.0 * DENSITY * np.pi * RADIUS**2
+            w = -0.5 * speed + np.sqrt(0.25 * speed**2 + of["thrust"] / disk)
+            ideal = of["thrust"] * (speed + w)
+            cells += [f"{of['CT']:.4f}", f"{of['shaft_power'] / ideal:.3f}"]
+        rows.append((f"{j:.1f}", *cells))
     return rows
 
 
-def rigid_wake_ct(nodes, rpm: float, speed: float) -> float:
-    """CT with the wake carried by the flight speed alone."""
-    omega = rpm * RAD_PER_S
-    flow = Flow(lattice_geometry(nodes, 2, RADIUS), RADIUS, omega, speed, DENSITY)
-    loads = loads_at(flow, 2, 0.0)
-    return float(coefficients(2.0 * loads.thrust, 0.0, omega, speed, DENSITY, 2.0 * RADIUS).CT)
+def summary() -> Rows:
+    """Mean errors of the three propellers, published and calibrated."""
+    study = aerodynamic_validation
+    every = [
+        column for case in study.CASES for column in study.compare(case, study.measurements(case))
+    ]
+    return _formatted(study.summary(every), study.FORMATS | {"not converged": "d"})
 
 
-def _of(solution, rpm: float, speed: float):
-    return coefficients(
-        solution.thrust, solution.torque, rpm * RAD_PER_S, speed, DENSITY, 2.0 * RADIUS
-    )
+def _formatted(table: list[dict], formats: dict[str, str]) -> Rows:
+    """Rows of a study with its formats, head first."""
+    return [
+        tuple(formats),
+        *(
+            tuple("" if key not in row else format(row[key], form) for key, form in formats.items())
+            for row in table
+        ),
+    ]
 
 
-def _error(value, measured: float) -> str:
-    # Where the measured coefficient crosses zero a relative error says nothing.
-    return f"{100.0 * (float(value) / measured - 1.0):+.0f} %" if measured > 0.02 else "-"
+def run_4003() -> Rows:
+    """APC-SF 11x4.7 at 4003 rpm, point by point."""
+    tunnel = aerodynamic_validation.measurements("apcsf_11x4.7")
+    run = tunnel.dynamic[tunnel.dynamic.rpm == 4003]
+    twist = calibrated_twist_deg(SLOW_FLYER, tunnel.static)
+    published, calibrated = (computed(SLOW_FLYER, run, offset) for offset in (0.0, twist))
+    inviscid = computed(SLOW_FLYER, run, viscous=False)
+    thesis = computed(load_propeller("apcsf_11x4.7_thesis"), run)
+    columns: dict[str, Points] = {
+        "UIUC": run, "published": published, "calibrated": calibrated, "inviscid": inviscid,
+        "thesis' sections": thesis,
+    }  # fmt: skip
+    names = ("CT", "CP")
+    rows: Rows = [("J", *(f"{what} {by}" for what in names for by in columns))]
+    for i, j in enumerate(run.J):
+        cells = (f"{getattr(of, what)[i]:.4f}" for what in names for of in columns.values())
+        rows.append((f"{j:.3f}", *cells))
+    return rows
+
+
+def sensitivity(case: str) -> Rows:
+    """What the errors of a propeller depend on."""
+    study = aerodynamic_sensitivity
+    if not study.neuralfoil_tables.neuralfoil_installed():
+        raise SystemExit("n_crit takes NeuralFoil: pip install 'propmdao[polars]'")
+    tunnel = study.chosen(aerodynamic_validation.measurements(case))
+    return _formatted(study.sensitivities(case, tunnel, with_n_crit=True), study.FORMATS)
+
+
+def twist_needed() -> Rows:
+    """Twist offset for the measured CT in hover, and the error of CP with it."""
+    rows: Rows = [("propeller", "rpm", "J", "twist for the measured CT, deg", "error of CP, %")]
+    study = aerodynamic_sensitivity
+    for case in study.PITCH:
+        tunnel = study.chosen(aerodynamic_validation.measurements(case))
+        for part in (tunnel.static, tunnel.dynamic[tunnel.dynamic.J <= 0.5]):
+            for rpm, j, twist, cp in zip(
+                part.rpm, part.J, *study.twist_needed(load_propeller(case), part), strict=True
+            ):
+                rows.append((case, f"{rpm:.0f}", f"{j:.3f}", f"{twist:+.2f}", f"{cp:+.1f}"))
+    return rows
+
+
+def hover_noise() -> Rows:
+    """Blade passage levels in hover."""
+    return hover_noise_study.rows(hover_noise_study.hover_tones())
 
 
 def design_point() -> Rows:
     """The thesis' design point: 8 m/s, 4200 rpm."""
-    rows: Rows = [("sections and twist", "T, N", "CT", "CQ", "thickness tone, dB")]
-    for label, change in {
-        "E63 to Clark-Y (catalogue)": (),
-        "NACA 4412": ("naca4412",),
-        "NACA 4412, twist +1 deg": ("naca4412", 1.0),
-        "E63 to the tip": ("e63",),
+
+    def with_sections(airfoil: str) -> Propeller:
+        return dataclasses.replace(
+            SLOW_FLYER, airfoils=((0.15, airfoil),), thickness_over_chord=None
+        )
+
+    rows: Rows = [("sections", "flow", "T, N", "CT", "CQ", "thickness tone, dB")]
+    for label, propeller in {
+        "catalogue": SLOW_FLYER,
+        "thesis, E63 to Clark-Y": load_propeller("apcsf_11x4.7_thesis"),
+        "NACA 4412": with_sections("naca4412"),
     }.items():
-        result = analyze(
-            slow_flyer(*change), rpm=4200.0, speed=8.0, observers=[(1.905, -45.0)]
-        ).to_dict()
-        thickness = result["observers"][0]["harmonics"][0]["spl_thickness_db"]
-        rows.append(
-            (label, f"{result['thrust']:.3f}", f"{result['CT']:.4f}", f"{result['CQ']:.5f}",
-             f"{thickness:.2f}")
-        )  # fmt: skip
-    rows.append(("VSPAERO, NACA 4412", "1.49", "0.0410", "0.00360", ""))
-    rows.append(("thesis, VSPAERO, E63 to Clark-Y", "", "0.040", "0.0034", "37.88"))
+        for flow, viscous in (("viscous", True), ("inviscid", False)):
+            result = analyze(
+                propeller, rpm=4200.0, speed=8.0, viscous=viscous, observers=[(1.905, -45.0)]
+            ).to_dict()
+            thickness = result["observers"][0]["harmonics"][0]["spl_thickness_db"]
+            rows.append(
+                (label, flow, f"{result['thrust']:.3f}", f"{result['CT']:.4f}",
+                 f"{result['CQ']:.5f}", f"{thickness:.2f}")
+            )  # fmt: skip
+    rows.append(("NACA 4412", "VSPAERO", "1.49", "0.0410", "0.00360", ""))
+    rows.append(("thesis, E63 to Clark-Y", "its VSPAERO", "", "0.040", "0.0034", "37.88"))
     return rows
 
 
 TABLES: dict[str, Callable[[], Rows]] = {
     "lattice": lattice_convergence,
     "wake": wake_convergence,
-    "uiuc": uiuc,
+    "ideal disk": ideal_disk,
+    "wind tunnel": summary,
+    "run at 4003 rpm": run_4003,
+    "sensitivity apcsf_11x4.7": partial(sensitivity, "apcsf_11x4.7"),
+    "sensitivity apce_10x7": partial(sensitivity, "apce_10x7"),
+    "twist needed": twist_needed,
+    "hover noise": hover_noise,
     "design point": design_point,
 }
 
@@ -171,17 +224,25 @@ def markdown(rows: Rows) -> str:
 
 
 def main() -> None:
-    """Replace every table of docs/verification.md."""
+    """Replace the tables of docs/verification.md."""
+    parser = argparse.ArgumentParser(description=__doc__.split("\n\n")[0])
+    parser.add_argument("tables", nargs="*", help=f"some of: {', '.join(TABLES)}; default all")
+    names = parser.parse_args().tables or list(TABLES)
+    unknown = [name for name in names if name not in TABLES]
+    if unknown:
+        parser.error(f"no table {unknown[0]!r}; there are: {', '.join(TABLES)}")
     page = HERE / "verification.md"
-    text = page.read_text()
-    for name, table in TABLES.items():
+    for name in names:
         begin, end = f"<!-- table: {name} -->", "<!-- end of table -->"
         pattern = re.compile(f"({re.escape(begin)}\n).*?({end})", re.DOTALL)
-        text, n = pattern.subn(lambda m, t=table: m[1] + markdown(t()) + "\n" + m[2], text)
+        text = markdown(TABLES[name]())
+        written, n = pattern.subn(
+            lambda m, t=text: f"{m[1]}{t}\n{m[2]}", page.read_text(encoding="utf-8")
+        )
         if n != 1:
             raise SystemExit(f"{page.name} must have the table {name!r} once; it has it {n} times")
-        print(f"{name}: written")
-    page.write_text(text)
+        page.write_text(written, encoding="utf-8")
+        print(f"{name}: written", flush=True)
 
 
 if __name__ == "__main__":
