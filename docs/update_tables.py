@@ -54,6 +54,32 @@ def solve(speed: float, n_chordwise: int = 8, n_spanwise: int = 24, ages: np.nda
     )
 
 
+def targets() -> Rows:
+    """What is aimed at for APC-SF 11x4.7, and what is measured."""
+    study = aerodynamic_validation
+    columns = study.compare("apcsf_11x4.7", study.measurements("apcsf_11x4.7"))
+    rows: Rows = [("APC-SF 11x4.7", "target", "measured", "")]
+    for column in columns:
+        found = study.mean_errors(column.errors) | {"trend": column.errors.trend}
+        for name, target in study.TARGETS[column.name].items():
+            unit = "" if name == "trend" else " %"
+            met = found[name] >= target if name == "trend" else found[name] <= target
+            measured = f"{found[name]:.2f}" if name == "trend" else f"{found[name]:.1f}{unit}"
+            rows.append(
+                (f"{column.name}: {name}", f"{target:g}{unit}", measured, _verdict(met))
+            )  # fmt: skip
+    heard = hover_noise_study.hover_tones()
+    error = np.abs(heard.spl_db - heard.measured_db)
+    for label, value, target in (("mean", error.mean(), 1.0), ("largest", error.max(), 2.0)):
+        name = f"hover, level at blade passage: {label} error"
+        rows.append((name, f"{target:g} dB", f"{value:.1f} dB", _verdict(value <= target)))
+    return rows
+
+
+def _verdict(met: bool) -> str:
+    return "met" if met else "missed"
+
+
 def lattice_convergence() -> Rows:
     """Thrust and torque for other numbers of panels, against the default 8 x 24."""
     rows: Rows = [("panels", "hover T", "hover Q", "8 m/s T", "8 m/s Q")]
@@ -203,6 +229,7 @@ def design_point() -> Rows:
 
 
 TABLES: dict[str, Callable[[], Rows]] = {
+    "targets": targets,
     "lattice": lattice_convergence,
     "wake": wake_convergence,
     "ideal disk": ideal_disk,
