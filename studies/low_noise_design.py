@@ -29,7 +29,7 @@ from propmdao.fidelity import Fidelity
 from propmdao.geometry.airfoil import CHORD_FRACTION, max_camber_for_design_lift, naca4
 from propmdao.propeller import Propeller, load_propeller
 
-BASELINE = load_propeller("apcsf_11x4.7")
+BASELINE = load_propeller("apcsf_11x4.7_thesis")
 START = dataclasses.replace(BASELINE, airfoils=[(1.0, "naca4409")])
 SPEED, DENSITY, THRUST = 8.0, 1.225, 1.20  # m/s, kg/m3, N
 RPM_BOUNDS = (3500.0, 5500.0)
@@ -63,7 +63,7 @@ Comparable with what the thesis reports: BPF and thickness levels, CT, CQ. Its o
 levels stand 8 dB above its own BPF tone, content of a 10 deg time step; its CT of 0.040
 at 4200 rpm is 1.46 N, not 1.20 N. The APC-SF at 4200 rpm here: {thrust:.2f} N, CT {CT:.4f},
 CQ {CQ:.5f}, thickness {oaspl_thickness_db:.2f} dB, BPF {spl_bpf_db:.2f} dB.
-No viscous drag, so torque is low. Tones only, no broadband noise."""
+Viscous loads, which the thesis does not have. Tones only, no broadband noise."""
 
 
 def build_problem(torque_limit: float) -> om.Problem:

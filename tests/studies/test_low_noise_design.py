@@ -95,7 +95,7 @@ def analysis(propeller: Propeller, **drive: float) -> dict[str, float]:
 def test_columns_are_what_analyze_says_of_the_propeller(run: Run, heading: str) -> None:
     # Of the files that a user gets for the two new blades.
     name = {"optimum": "optimum.toml", "thesis' optimum": "thesis_optimum.toml"}.get(heading)
-    propeller = load_propeller(run.folder / name if name else "apcsf_11x4.7")
+    propeller = load_propeller(run.folder / name if name else "apcsf_11x4.7_thesis")
     column = run.column(heading)
     expected = analysis(propeller, thrust=1.2)
     assert_allclose(list(column.values()), [expected[key] for key in column], rtol=1e-12)
@@ -126,7 +126,7 @@ def test_the_optimum_is_feasible_and_no_louder_than_any_feasible_design(
 
 
 def test_the_search_starts_from_naca_4409(run: Run, checkout: Path) -> None:
-    start = dataclasses.replace(load_propeller("apcsf_11x4.7"), airfoils=[(1.0, "naca4409")])
+    start = dataclasses.replace(load_propeller("apcsf_11x4.7_thesis"), airfoils=[(1.0, "naca4409")])
     objective, _ = coarse_study(checkout).designs_tried(run.folder, np.inf)
     assert_allclose(objective[0], analysis(start, thrust=1.2)["oaspl_db"], atol=1e-7)
 
@@ -168,7 +168,7 @@ def test_printed_table_is_the_csv_rounded_and_fits_a_terminal(run: Run) -> None:
 
 
 def test_note_compares_with_the_thesis_at_its_rotation_speed(run: Run) -> None:
-    at_4200 = analysis(load_propeller("apcsf_11x4.7"), rpm=4200.0)
+    at_4200 = analysis(load_propeller("apcsf_11x4.7_thesis"), rpm=4200.0)
     note = " ".join(run.printed.split())
     assert f"at 4200 rpm here: {at_4200['thrust']:.2f} N, CT {at_4200['CT']:.4f}" in note
     assert f"thickness {at_4200['oaspl_thickness_db']:.2f} dB" in note
@@ -225,7 +225,7 @@ def test_evolution_comes_within_a_twentieth_of_a_decibel_of_gradients(
 ) -> None:
     study = import_study(checkout)
     study.FIDELITY = COARSE
-    limit = analysis(load_propeller("apcsf_11x4.7"), thrust=1.2)["torque"]
+    limit = analysis(load_propeller("apcsf_11x4.7_thesis"), thrust=1.2)["torque"]
     by_gradient = study.build_problem(limit)
     by_gradient.driver = om.ScipyOptimizeDriver(optimizer="SLSQP", tol=1e-7, disp=False)
     by_gradient.run_driver()
