@@ -10,7 +10,8 @@ import openmdao.api as om
 
 from propmdao.aerodynamics.coefficients import coefficients
 from propmdao.aerodynamics.polars import SectionPolars
-from propmdao.aerodynamics.steady import failure, solve_steady
+from propmdao.aerodynamics.solution import failure
+from propmdao.aerodynamics.steady import solve_steady
 from propmdao.components.jax_component import Arrays, JaxComponent
 from propmdao.components.section_inputs import add_section_inputs, section_grid, with_inputs
 from propmdao.fidelity import Fidelity
@@ -38,7 +39,6 @@ class AerodynamicsComp(JaxComponent):
     thrust_guess : float
         Thrust where it is nearly known, as after a trim: half of the work, the same results;
         0 is no guess, ``N``.
-
     section_polars : (n_spanwise, 3, n_re, n_alpha) array
         With option `polars`: of `GeometryComp`.
     sound_speed : float
@@ -57,6 +57,10 @@ class AerodynamicsComp(JaxComponent):
         Of the vortex rings of a blade, ``m**2/s``.
     load_position, load_force : (n_loads, 3) arrays
         Point forces of blade 1 ON THE FLUID, ``m``, ``N``; `n_loads` of the module counts them.
+    section_speed : (n_spanwise,) array
+        Speed of the air relative to the sections in the middle of the strips, ``m/s``.
+    section_lift_coefficient : (n_spanwise,) array
+        Their lift coefficients; without polars those of the lattice.
 
     Options
     -------
@@ -103,6 +107,8 @@ class AerodynamicsComp(JaxComponent):
         self.add_output(
             "load_force", shape=(n_loads(fidelity), 3), units="N", desc="Force on the fluid."
         )
+        self.add_output("section_speed", shape=ns, units="m/s", desc="Relative to the air.")
+        self.add_output("section_lift_coefficient", shape=ns, desc="In the middle of the strips.")
         polars, grid = self.options["polars"], None
         if polars is not None:
             add_section_inputs(self, polars, ns)
@@ -148,5 +154,7 @@ def _steady(inputs: Arrays, constants: Any, static: int) -> Arrays:
         "circulation": solution.circulation,
         "load_position": solution.point_loads.position,
         "load_force": solution.point_loads.force,
+        "section_speed": solution.sections.relative_speed,
+        "section_lift_coefficient": solution.sections.lift_coefficient,
         "solution": solution,
     }

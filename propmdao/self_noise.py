@@ -16,7 +16,7 @@ from propmdao.acoustics.broadband import (
     third_octave_centers,
 )
 from propmdao.aerodynamics.section_coupling import AIR_VISCOSITY
-from propmdao.aerodynamics.steady import SteadySolution
+from propmdao.aerodynamics.solution import SteadySolution
 from propmdao.geometry.blade import Blade, SpanInterpolation
 from propmdao.geometry.trailing_edge import trailing_edge
 from propmdao.records import Scalar

@@ -15,9 +15,9 @@ from jax import Array
 from propmdao.aerodynamics.lattice_loads import LatticeLoads, lattice_geometry
 from propmdao.aerodynamics.roots import at_root, empty
 from propmdao.aerodynamics.section_coupling import ViscousSections
+from propmdao.aerodynamics.solution import SteadySolution
 from propmdao.aerodynamics.steady import (
     Flow,
-    SteadySolution,
     induced_velocity,
     loads_at,
     solve_steady,

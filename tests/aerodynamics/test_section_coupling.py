@@ -15,7 +15,8 @@ from propmdao.aerodynamics.polars import (
     section_curves,
 )
 from propmdao.aerodynamics.section_coupling import ViscousSections
-from propmdao.aerodynamics.steady import failure, solve_steady
+from propmdao.aerodynamics.solution import failure
+from propmdao.aerodynamics.steady import solve_steady
 from propmdao.aerodynamics.strips import strip_radii
 from propmdao.geometry.blade import Blade, span_interpolation
 from propmdao.geometry.lattice import lattice_nodes, lattice_span

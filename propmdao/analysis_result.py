@@ -1,0 +1,159 @@
+"""What an analysis found, and its levels as plain numbers."""
+
+from __future__ import annotations
+
+import dataclasses
+from typing import Any
+
+import jax
+import numpy as np
+import numpy.typing as npt
+from jax import Array
+
+from propmdao.acoustics.broadband import SelfNoise
+from propmdao.acoustics.formulation1a import Tones
+from propmdao.acoustics.levels import (
+    REFERENCE_PRESSURE,
+    a_weighting,
+    level_db,
+    mean_square,
+    oaspl_db,
+    oaspl_dba,
+    spl_db,
+    third_octave,
+)
+from propmdao.aerodynamics.coefficients import Coefficients
+from propmdao.aerodynamics.solution import SteadySolution, failure
+from propmdao.self_noise import BANDS_HZ
+
+RAD_PER_S = np.pi / 30.0  # of one rpm
+#: Mechanisms of broadband noise, by their key in the results.
+MECHANISMS = tuple(field.name for field in dataclasses.fields(SelfNoise))
+
+
+@dataclasses.dataclass(frozen=True)
+class Analysis:
+    """Loads and tones of a propeller at one operating point.
+
+    Attributes
+    ----------
+    rpm, speed, density : float
+        Rotation speed [rev/min], axial flight speed [m/s], air density [kg/m^3].
+    viscous : bool
+        Whether the lattice was held to section polars.
+    steady : SteadySolution
+        Loads of the vortex lattice.
+    coefficients : Coefficients
+        J, CT, CQ, CP, eta.
+    observers : (n_observers, 2) array
+        Radius [m] and elevation [deg] of the observers.
+    tones : Tones
+        Their complex pressure amplitudes.
+    broadband : SelfNoise or None
+        Mean squares in the third octaves `propmdao.self_noise.BANDS_HZ`, where asked for.
+    """
+
+    rpm: float
+    speed: float
+    density: float
+    viscous: bool
+    steady: SteadySolution
+    coefficients: Coefficients
+    observers: npt.NDArray[np.float64]
+    tones: Tones
+    broadband: SelfNoise | None
+
+    def to_dict(self) -> dict[str, Any]:
+        """Results as plain numbers, with the keys of ``propmdao analyze --json``.
+
+        Returns
+        -------
+        dict
+            rpm, speed, rho, J, thrust, torque, shaft_power, CT, CQ, CP, eta, viscous, converged,
+            failure (None, or why it did not converge) and a list of observers with their levels.
+        """
+        levels = jax.tree.map(np.asarray, _levels(self.tones))
+        return {
+            "rpm": self.rpm,
+            "speed": self.speed,
+            "rho": self.density,
+            "J": float(self.coefficients.J),
+            "thrust": float(self.steady.thrust),
+            "torque": float(self.steady.torque),
+            "shaft_power": float(self.steady.torque) * self.rpm * RAD_PER_S,
+            "CT": float(self.coefficients.CT),
+            "CQ": float(self.coefficients.CQ),
+            "CP": float(self.coefficients.CP),
+            "eta": float(self.coefficients.eta),
+            "viscous": self.viscous,
+            "converged": bool(self.steady.converged),
+            "failure": failure(self.steady),
+            "observers": [self._observer(i, levels) for i in range(len(self.observers))],
+        }
+
+    def _observer(self, i: int, levels: dict[str, np.ndarray]) -> dict[str, Any]:
+        frequency = np.asarray(self.tones.frequency_hz)
+        spectra = [name for name in levels if name.startswith("spl")]
+        result = {
+            "elevation_deg": float(self.observers[i, 1]),
+            "radius": float(self.observers[i, 0]),
+            "spl_bpf_db": float(levels["spl_db"][i, 0]),
+            **{name: float(levels[name][i]) for name in levels if name not in spectra},
+            "harmonics": [
+                {"m": m + 1, "frequency_hz": float(f)}
+                | {name: float(levels[name][i, m]) for name in spectra}
+                for m, f in enumerate(frequency)
+            ],
+        }
+        center, band = third_octave(frequency, self.tones.total[i])
+        if self.broadband is not None:
+            noise = {name: np.asarray(getattr(self.broadband, name))[i] for name in MECHANISMS} | {
+                "spl": np.asarray(self.broadband.total)[i]
+            }
+            center, band = _with_noise(center, band, noise["spl"])
+            result |= _total(self.tones, i, noise["spl"])
+            in_bands = {name: np.asarray(level_db(power)) for name, power in noise.items()}
+            result["broadband"] = [
+                {"frequency_hz": float(f)}
+                | {f"{name}_db": float(level[k]) for name, level in in_bands.items()}
+                for k, f in enumerate(BANDS_HZ)
+            ]
+        result["third_octave"] = [
+            {"frequency_hz": float(f), "spl_db": float(level)}
+            for f, level in zip(center, band, strict=True)
+        ]
+        return result
+
+
+def _with_noise(
+    center: npt.NDArray[np.float64], band: npt.NDArray[np.float64], noise: npt.NDArray[np.float64]
+) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float64]]:
+    """Levels in all bands of tones or noise."""
+    # Both are exact mid-band frequencies, but computed in two ways.
+    numbers, known = (np.rint(10.0 * np.log10(f / 1000.0)) for f in (center, BANDS_HZ))
+    everywhere = np.union1d(numbers, known)
+    power = np.zeros(everywhere.size)
+    power[np.searchsorted(everywhere, numbers)] += REFERENCE_PRESSURE**2 * 10 ** (band / 10)
+    power[np.searchsorted(everywhere, known)] += noise
+    return 1000.0 * 10.0 ** (everywhere / 10.0), np.asarray(level_db(power))
+
+
+def _total(tones: Tones, i: int, noise: npt.NDArray[np.float64]) -> dict[str, float]:
+    """Overall levels of tones and broadband noise together, and of the noise alone."""
+    power = np.concatenate([np.asarray(mean_square(tones.total[i])), noise])
+    frequency = np.concatenate([np.asarray(tones.frequency_hz), BANDS_HZ])
+    weighted = power * 10 ** (np.asarray(a_weighting(np.maximum(frequency, 1e-3))) / 10.0)
+    return {
+        "oaspl_db": float(level_db(power.sum())),
+        "oaspl_dba": float(level_db(weighted.sum())),
+        "oaspl_broadband_db": float(level_db(noise.sum())),
+    }
+
+
+@jax.jit
+def _levels(tones: Tones) -> dict[str, Array]:
+    """Levels of the tones by their key: of all observers, and harmonics where it begins by spl."""
+    parts = {"": tones.total, "thickness_": tones.thickness, "loading_": tones.loading}
+    levels = {f"oaspl_{part}db": oaspl_db(pressure) for part, pressure in parts.items()}
+    levels |= {f"spl_{part}db": spl_db(pressure) for part, pressure in parts.items()}
+    return levels | {"oaspl_dba": oaspl_dba(tones.frequency_hz, tones.total)}
