@@ -8,7 +8,7 @@ import jax.numpy as jnp
 import openmdao.api as om
 
 from propmdao.aerodynamics.polars import PolarTable, SectionPolars
-from propmdao.aerodynamics.section_coupling import AIR_VISCOSITY, ViscousSections
+from propmdao.aerodynamics.section_laws import AIR_VISCOSITY, ViscousSections
 from propmdao.components.jax_component import Arrays
 
 

@@ -18,7 +18,7 @@ from pathlib import Path
 import numpy as np
 
 from propmdao.aerodynamics.polars import polars_for
-from propmdao.aerodynamics.section_coupling import viscous_sections
+from propmdao.aerodynamics.section_laws import viscous_sections
 from propmdao.aerodynamics.steady import WAKE_AGES, solve_steady
 from propmdao.aerodynamics.strips import strip_radii
 from propmdao.aerodynamics.wake import wake_azimuths

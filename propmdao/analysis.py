@@ -20,7 +20,7 @@ from propmdao.aerodynamics.polars import (
     warn_outside,
     warn_outside_sections,
 )
-from propmdao.aerodynamics.section_coupling import ViscousSections, viscous_sections
+from propmdao.aerodynamics.section_laws import ViscousSections, viscous_sections
 from propmdao.aerodynamics.solution import SteadySolution
 from propmdao.aerodynamics.steady import solve_steady
 from propmdao.aerodynamics.strips import strip_radii

@@ -15,7 +15,7 @@ from propmdao.acoustics.broadband import (
     rotor_self_noise,
     third_octave_centers,
 )
-from propmdao.aerodynamics.section_coupling import AIR_VISCOSITY
+from propmdao.aerodynamics.section_laws import AIR_VISCOSITY
 from propmdao.aerodynamics.solution import SteadySolution
 from propmdao.geometry.blade import Blade, SpanInterpolation
 from propmdao.geometry.trailing_edge import trailing_edge

@@ -27,7 +27,7 @@ from propmdao.aerodynamics.lattice_loads import LatticeLoads, lattice_geometry, 
 from propmdao.aerodynamics.polars import SectionPolars, neuralfoil_tables, polars_for
 from propmdao.aerodynamics.polars.family import shape_values
 from propmdao.aerodynamics.polars.shipped import limits, shape, shipped_tables
-from propmdao.aerodynamics.section_coupling import viscous_sections
+from propmdao.aerodynamics.section_laws import viscous_sections
 from propmdao.aerodynamics.steady import WAKE_AGES, Flow, induced_velocity
 from propmdao.aerodynamics.strips import strip_radii
 from propmdao.aerodynamics.wake import core_radius, helical_wake

@@ -23,11 +23,10 @@ from propmdao.aerodynamics.rings import (
 from propmdao.aerodynamics.section_coupling import (
     SectionStates,
     StripFlow,
-    ViscousSections,
-    section_laws,
     section_states,
     solve_recambering,
 )
+from propmdao.aerodynamics.section_laws import ViscousSections, section_laws
 from propmdao.aerodynamics.strips import Strips, blade_strips
 from propmdao.records import Scalar, record
 

@@ -11,10 +11,8 @@ a polar with the lift cl_p = 2 pi (alpha - alpha_0) of thin-airfoil theory needs
 all: the inviscid lattice is a limit of this one, exactly. W is the resultant of rotation, flight
 and induced velocity at the disk.
 
-Past stall, where cl falls with alpha, strips much narrower than their chord could trade lift with
-their neighbours, in many ways at will. A polar is that of a section, which has no meaning over less
-span than a chord: what the polar takes off the lift of thin-airfoil theory, cl - cl_p, enters as
-its mean over the span nearby. That leaves one solution on any mesh.
+What the polar takes off the lift of thin-airfoil theory enters as its mean over the span nearby
+(`section_laws`), which leaves one solution on any mesh.
 """
 
 from __future__ import annotations
@@ -26,75 +24,15 @@ import jax.numpy as jnp
 import numpy as np
 from jax import Array
 
-from propmdao.aerodynamics.polars.family import SectionPolars, blade_tables
-from propmdao.aerodynamics.polars.table import (
-    PolarTable,
-    SectionCurves,
-    curve_coefficients,
-    section_curves,
-)
-from propmdao.aerodynamics.stall_delay import delay_factor, delayed_stall
+from propmdao.aerodynamics.section_laws import SectionLaws
 from propmdao.aerodynamics.strips import Strips
-from propmdao.geometry.blade import Blade, SpanInterpolation
-from propmdao.records import Scalar, record
+from propmdao.records import record
 
-AIR_VISCOSITY = 1.789e-5  # dynamic, at 15 C [Pa s]
 _TOLERANCE = 1.0e-9  # in the lift coefficient
 _MAX_STEPS = 60
 _LONGEST_STEP = np.radians(8.0)
 # Fractions of a Newton step that are tried: the polars bend sharply near stall.
 _FRACTIONS = 0.5 ** np.arange(7)
-_MIXING = 0.5  # standard deviation of the mean over the span, in chords
-
-
-@record
-class ViscousSections:
-    """What the sections of a blade do in viscous flow.
-
-    Attributes
-    ----------
-    polars : PolarTable
-        Polars of the sections in the middle of the strips, ns rows.
-    dynamic_viscosity, sound_speed : float
-        Of the air [Pa s], [m/s].
-    stall_delay : float
-        1 where rotation delays stall, 0 for polars as in two dimensions.
-    """
-
-    polars: PolarTable
-    dynamic_viscosity: Scalar
-    sound_speed: Scalar
-    stall_delay: Scalar
-
-
-def viscous_sections(
-    polars: SectionPolars,
-    blade: Blade,
-    section_radii: SpanInterpolation,
-    sound_speed: Scalar,
-    stall_delay: Scalar = 1.0,
-) -> ViscousSections:
-    """Sections of a blade in air of 15 C viscosity.
-
-    Parameters
-    ----------
-    polars : SectionPolars
-        Polars of the propeller's sections.
-    blade : Blade
-        Its blade, modified or not.
-    section_radii : SpanInterpolation
-        From the blade's stations to `propmdao.aerodynamics.strips.strip_radii`.
-    sound_speed, stall_delay : float
-        As in `ViscousSections`.
-
-    Returns
-    -------
-    ViscousSections
-        What the lattice is held to.
-    """
-    table = blade_tables(polars, blade, section_radii)
-    values = (jnp.asarray(value, float) for value in (AIR_VISCOSITY, sound_speed, stall_delay))
-    return ViscousSections(table, *values)
 
 
 @record
@@ -147,67 +85,6 @@ class StripFlow:
         speed_chord = self.relative_speed * self.strips.chord
         alpha = circulation / (jnp.pi * speed_chord) + self.strips.zero_lift_angle - recambering
         return alpha, 2.0 * circulation / speed_chord
-
-
-@record
-class SectionLaws:
-    """Polars of the strips at an operating point.
-
-    Attributes
-    ----------
-    curves : SectionCurves
-        In two dimensions, at the strips' Reynolds and Mach numbers.
-    zero_lift_angle, stall_delay : (ns,) arrays
-        As `delayed_stall` takes them.
-    mean : (ns, ns) array
-        Means over the span near each strip.
-    """
-
-    curves: SectionCurves
-    zero_lift_angle: Array
-    stall_delay: Array
-    mean: Array
-
-    def thin(self, alpha: Array) -> Array:
-        """Lift coefficient by thin-airfoil theory: (ns,)."""
-        return 2.0 * jnp.pi * (alpha - self.zero_lift_angle)
-
-    def beyond_thin(self, alpha: Array) -> tuple[Array, Array]:
-        """What the polars add to the lift of thin-airfoil theory, and drag: (ns,) each."""
-        cl, cd, _ = curve_coefficients(self.curves, alpha)
-        cl, cd = delayed_stall(cl, cd, alpha, self.zero_lift_angle, self.stall_delay)
-        return cl - self.thin(alpha), cd
-
-
-def section_laws(
-    strips: Strips, turning: Array, axial_speed: Scalar, density: Scalar, sections: ViscousSections
-) -> SectionLaws:
-    """Polars of the strips at an operating point.
-
-    Parameters
-    ----------
-    strips : Strips
-        The sections.
-    turning : (ns,) array
-        Speed of rotation [m/s].
-    axial_speed, density : float
-        Flight and induced speed at the disk [m/s], density of the air [kg/m^3].
-    sections : ViscousSections
-        Their polars at any.
-
-    Returns
-    -------
-    SectionLaws
-        Lift and drag by the angle of attack alone.
-    """
-    w = jnp.hypot(turning, axial_speed)
-    reynolds = density * w * strips.chord / sections.dynamic_viscosity
-    curves = section_curves(sections.polars, reynolds, w / sections.sound_speed)
-    tip_speed = turning / strips.r_over_R
-    turning_share = tip_speed / jnp.hypot(tip_speed, axial_speed)
-    factor = delay_factor(strips.chord / strips.radius, strips.r_over_R, turning_share)
-    delay = sections.stall_delay * factor
-    return SectionLaws(curves, strips.zero_lift_angle, delay, _spanwise_mean(strips))
 
 
 def section_states(flow: StripFlow, recambering: Array, laws: SectionLaws | None) -> SectionStates:
@@ -299,10 +176,3 @@ def _residual_and_slope(
     angle_slope = per_circulation / jnp.pi * flow.response - jnp.eye(alpha.size)
     slope = 2.0 * per_circulation * flow.response - held_slope @ angle_slope
     return lift - laws.thin(alpha) - laws.mean @ more, slope
-
-
-def _spanwise_mean(strips: Strips) -> Array:
-    """Means over the span near each strip, weighted by a Gaussian: (ns, ns), rows sum to 1."""
-    apart = (strips.radius - strips.radius[:, None]) / (_MIXING * strips.chord[:, None])
-    weight = strips.width * jnp.exp(-0.5 * apart**2)
-    return weight / weight.sum(axis=1, keepdims=True)

@@ -22,7 +22,7 @@ from propmdao.aerodynamics.lattice_loads import (
     loads_with_wake,
 )
 from propmdao.aerodynamics.roots import at_root, decreasing_root
-from propmdao.aerodynamics.section_coupling import ViscousSections
+from propmdao.aerodynamics.section_laws import ViscousSections
 from propmdao.aerodynamics.solution import SETTLED, SteadySolution, strip_loads
 from propmdao.aerodynamics.wake import (
     core_radius,

@@ -14,7 +14,7 @@ from jax import Array
 
 from propmdao.aerodynamics.lattice_loads import LatticeLoads, lattice_geometry
 from propmdao.aerodynamics.roots import at_root, empty
-from propmdao.aerodynamics.section_coupling import ViscousSections
+from propmdao.aerodynamics.section_laws import ViscousSections
 from propmdao.aerodynamics.solution import SteadySolution
 from propmdao.aerodynamics.steady import (
     Flow,

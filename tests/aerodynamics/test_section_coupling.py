@@ -14,7 +14,7 @@ from propmdao.aerodynamics.polars import (
     polars_for,
     section_curves,
 )
-from propmdao.aerodynamics.section_coupling import ViscousSections
+from propmdao.aerodynamics.section_laws import ViscousSections
 from propmdao.aerodynamics.solution import failure
 from propmdao.aerodynamics.steady import solve_steady
 from propmdao.aerodynamics.strips import strip_radii

@@ -15,7 +15,7 @@ import pytest
 
 from propmdao.acoustics import arc
 from propmdao.acoustics.broadband import band_level_db, rotor_self_noise, third_octave_centers
-from propmdao.aerodynamics.section_coupling import AIR_VISCOSITY
+from propmdao.aerodynamics.section_laws import AIR_VISCOSITY
 from propmdao.aerodynamics.strips import strip_radii
 from propmdao.analysis import SOUND_SPEED, analyze
 from propmdao.fidelity import Fidelity
