@@ -55,7 +55,9 @@ def few_points(study):
 def test_published_and_calibrated_columns(few_points, monkeypatch, capsys, tmp_path):
     validation, few = few_points
     printed = run(validation, monkeypatch, capsys, tmp_path)
-    assert max(len(line.rstrip()) for line in printed.splitlines() if CASE in line) <= 80
+    first = next(line for line in printed.splitlines() if line.startswith(CASE))
+    assert len(first.split()) == 8  # propeller, geometry, twist, four errors, trend
+    assert len(first.rstrip()) <= 80
     published, calibrated, *targets = rows(tmp_path / "summary.csv")
     assert (published["geometry"], float(published["twist"])) == ("published", 0.0)
     assert float(calibrated["twist"]) == pytest.approx(
