@@ -174,9 +174,8 @@ def third_octaves(
     top = 5.0 * np.ceil(max(np.max(level) for level in every) / 5.0 + 0.5)
     for name, color, level in colored(levels):
         if level.max() > top - 60.0:
-            # Dashes let what is equal shine through.
             style = "-" if name in SOURCE_COLORS or not measured else "--"
-            axes.plot(np.asarray(bands_hz), level, style, color=color, linewidth=2.0, label=name)
+            axes.plot(np.asarray(bands_hz), level, style, color=color, label=name, **_line(name))
         if name in measured:
             band, known = (np.asarray(q, float) for q in measured[name])
             axes.plot(band, known, "o-", color=color, linewidth=0.7, label=f"{name}, measured")
@@ -249,7 +248,7 @@ def level_history(
     axes = figure.add_subplot()
     axes.grid(**GRID)
     for name, color, level in colored(levels):
-        axes.plot(np.asarray(time), level, color=color, linewidth=2.0, label=name)
+        axes.plot(np.asarray(time), level, color=color, label=name, **_line(name))
     for (name, moment), style in zip((moments or {}).items(), ("--", ":", "-."), strict=False):
         axes.axvline(moment, color="0.4", linestyle=style, label=name)
     top = 5.0 * np.ceil(max(np.max(level) for level in levels.values()) / 5.0 + 0.5)
@@ -276,6 +275,11 @@ def colored(values: Mapping[str, npt.ArrayLike]) -> Iterator[tuple[str, str, Flo
     others = iter(_OTHER_COLORS if set(values) & set(SOURCE_COLORS) else RUN_COLORS)
     for name, of in values.items():
         yield name, SOURCE_COLORS.get(name) or next(others), np.asarray(of, float)
+
+
+def _line(name: str) -> dict[str, Any]:
+    """The total is broad and below all others: it is often that of its loudest part."""
+    return {"linewidth": 4.0, "zorder": 1.9} if name == "total" else {"linewidth": 2.0}
 
 
 def _frequency_axis(axes: Any) -> None:
