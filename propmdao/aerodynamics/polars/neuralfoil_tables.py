@@ -13,7 +13,7 @@ from propmdao.geometry.airfoil import CHORD_FRACTION
 
 #: Critical amplification of e^n transition, the same for every blade: moulded edges, and air that
 #: other blades have stirred. A clean wind tunnel has 9 to 12, a dirty one 4 to 8 (Drela, XFOIL user
-#: guide); studies/aerodynamic_validation.py shows what it changes.
+#: guide); studies/aerodynamic_sensitivity.py shows what it changes.
 N_CRIT = 5.0
 #: Largest of NeuralFoil's networks.
 MODEL_SIZE = "xxxlarge"
