@@ -14,8 +14,8 @@ from propmdao.acoustics.broadband import SelfNoise
 from propmdao.acoustics.formulation1a import Tones
 from propmdao.acoustics.levels import (
     REFERENCE_PRESSURE,
-    a_weighting,
     level_db,
+    level_dba,
     mean_square,
     oaspl_db,
     oaspl_dba,
@@ -142,10 +142,9 @@ def _total(tones: Tones, i: int, noise: npt.NDArray[np.float64]) -> dict[str, fl
     """Overall levels of tones and broadband noise together, and of the noise alone."""
     power = np.concatenate([np.asarray(mean_square(tones.total[i])), noise])
     frequency = np.concatenate([np.asarray(tones.frequency_hz), BANDS_HZ])
-    weighted = power * 10 ** (np.asarray(a_weighting(np.maximum(frequency, 1e-3))) / 10.0)
     return {
         "oaspl_db": float(level_db(power.sum())),
-        "oaspl_dba": float(level_db(weighted.sum())),
+        "oaspl_dba": float(level_dba(frequency, power)),
         "oaspl_broadband_db": float(level_db(noise.sum())),
     }
 
