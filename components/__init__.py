@@ -2,6 +2,7 @@
 
 from propmdao.components.acoustics_comp import AcousticsComp
 from propmdao.components.aerodynamics_comp import AerodynamicsComp
+from propmdao.components.broadband_comp import BroadbandComp
 from propmdao.components.constrained_search import Generation
 from propmdao.components.differential_evolution_driver import DifferentialEvolutionDriver
 from propmdao.components.geometry_comp import GeometryComp
@@ -12,6 +13,7 @@ from propmdao.components.sweep_driver import SweepDriver
 __all__ = [
     "AcousticsComp",
     "AerodynamicsComp",
+    "BroadbandComp",
     "DifferentialEvolutionDriver",
     "Generation",
     "GeometryComp",

@@ -44,7 +44,7 @@ class AcousticsComp(JaxComponent):
     oaspl_thickness_db, oaspl_loading_db : (n_observers,) arrays
         Overall levels of the two sources alone.
     oaspl_dba : (n_observers,) array
-        A-weighted overall level of the tones, dBA; broadband noise is not in it.
+        A-weighted overall level of the tones, dBA; broadband noise is `BroadbandComp`'s.
     mean_square_pressure : (n_observers, n_harmonics) array
         Of each tone, ``Pa**2``; add these for rotors that turn independently.
     frequency : (n_harmonics,) array
@@ -101,12 +101,30 @@ class AcousticsComp(JaxComponent):
         self.static = (self.options["n_blades"], fidelity.n_harmonics)
 
     def check(self, inputs: Any, values: Any) -> None:
-        x, y, _ = np.moveaxis(np.asarray(inputs["surface_nodes"]), -1, 0)
-        rpm, speed, sound = (float(inputs[n][0]) for n in ("rpm", "speed", "sound_speed"))
-        try:
-            require_subsonic_tip(float(np.hypot(x, y).max()), rpm * np.pi / 30.0, speed, sound)
-        except ValueError as error:
-            raise om.AnalysisError(str(error)) from error
+        check_tip_speed(inputs, "surface_nodes")
+
+
+def check_tip_speed(inputs: Any, nodes: str) -> None:
+    """Refuse blades that reach the speed of sound.
+
+    Parameters
+    ----------
+    inputs : mapping
+        With rpm, speed and sound_speed.
+    nodes : str
+        Input that holds points of the blade, (..., 3).
+
+    Raises
+    ------
+    om.AnalysisError
+        When the blade tip is not slower than sound.
+    """
+    x, y, _ = np.moveaxis(np.asarray(inputs[nodes]), -1, 0)
+    rpm, speed, sound = (float(inputs[n][0]) for n in ("rpm", "speed", "sound_speed"))
+    try:
+        require_subsonic_tip(float(np.hypot(x, y).max()), rpm * np.pi / 30.0, speed, sound)
+    except ValueError as error:
+        raise om.AnalysisError(str(error)) from error
 
 
 def _levels(inputs: Arrays, constants: None, static: tuple[int, int]) -> Arrays:

@@ -11,6 +11,7 @@ from propmdao.aerodynamics.polars import SectionPolars, polars_for
 from propmdao.aerodynamics.trim import LARGEST_TIP_SPEED, LEAST_TIP_SPEED
 from propmdao.components.acoustics_comp import AcousticsComp
 from propmdao.components.aerodynamics_comp import AerodynamicsComp, n_loads
+from propmdao.components.broadband_comp import BroadbandComp
 from propmdao.components.geometry_comp import CAMBER_INPUTS, GeometryComp, blade_distributions
 from propmdao.components.rotation_speed_comp import METHODS, RotationSpeedComp
 from propmdao.fidelity import Fidelity
@@ -20,7 +21,7 @@ SPLINE_METHODS = ("slinear", "akima", "cubic")
 
 
 class PropellerGroup(om.Group):
-    """Blade, rotation speed for a thrust, aerodynamics and tonal noise.
+    """Blade, rotation speed for a thrust, aerodynamics, tonal and broadband noise.
 
     Every variable is promoted under its name in the components, which describe shapes and units.
 
@@ -46,10 +47,13 @@ class PropellerGroup(om.Group):
     thrust, torque, shaft_power, efficiency, J, CT, CQ, CP : float
         Of `AerodynamicsComp`, ``N``, ``N*m``, ``W``.
     spl_bpf_db, oaspl_db, oaspl_thickness_db, oaspl_loading_db, oaspl_dba : (n_observers,) arrays
-        Levels of the tones, dB re 20 uPa.
+        Levels of the tones, dB re 20 uPa, with and without broadband noise.
+    oaspl_broadband_db, oaspl_broadband_dba, oaspl_total_db, oaspl_total_dba : (n_observers,) arrays
+        With `broadband`: levels of the broadband noise alone, and of tones and broadband together.
     lattice_nodes, surface_nodes, section_polars, circulation, load_position, load_force, \
-mean_square_pressure, frequency
-        As in `GeometryComp`, `AerodynamicsComp` and `AcousticsComp`.
+section_speed, section_lift_coefficient, mean_square_pressure, frequency, \
+broadband_mean_square_pressure, band_frequency
+        As in `GeometryComp`, `AerodynamicsComp`, `AcousticsComp` and `BroadbandComp`.
 
     Options
     -------
@@ -78,6 +82,8 @@ mean_square_pressure, frequency
     polars : SectionPolars or None
         Of `propmdao.aerodynamics.polars.polars_for`, for tables of one's own; by default the
         catalogue's.
+    broadband : bool
+        Add the broadband self-noise of the blades.
     camber : str
         ``"camber_over_chord"``, or ``"design_lift_coefficient"`` to give camber as that.
     """
@@ -95,6 +101,7 @@ mean_square_pressure, frequency
         declare("viscous", True, types=bool, desc="Hold the lattice to section polars.")
         declare("stall_delay", True, types=bool, desc="Of rotating sections.")
         declare("polars", None, types=SectionPolars, allow_none=True, desc="Own ones.")
+        declare("broadband", False, types=bool, desc="Add the self-noise of the blades.")
         declare("camber", "camber_over_chord", values=CAMBER_INPUTS, desc="How camber is given.")
 
     def setup(self) -> None:
@@ -112,11 +119,7 @@ mean_square_pressure, frequency
             promotes_outputs=["*"],
         )
         for name in blade_distributions(propeller, options["camber"]):
-            splined = name in options["design_distributions"]
-            # SplineComp's output has a leading axis of one.
-            self.promotes(
-                "geometry", inputs=[name], src_indices=om.slicer[0, :] if splined else None
-            )
+            self._promote_distribution("geometry", name)
         rotor = {
             "n_blades": int(propeller.n_blades),
             "radius": 0.5 * propeller.diameter,
@@ -164,6 +167,33 @@ mean_square_pressure, frequency
             ),
             promotes=["*"],
         )
+        if options["broadband"]:
+            self.add_subsystem(
+                "broadband",
+                BroadbandComp(
+                    propeller=propeller, observers=options["observers"], fidelity=fidelity
+                ),
+                promotes_inputs=[
+                    "lattice_nodes",
+                    "section_speed",
+                    "section_lift_coefficient",
+                    "rpm",
+                    "speed",
+                    "density",
+                    "sound_speed",
+                    "observer_position",
+                    "oaspl_db",
+                    "oaspl_dba",
+                ],
+                promotes_outputs=["*"],
+            )
+            self._promote_distribution("broadband", "thickness_over_chord")
+
+    def _promote_distribution(self, component: str, name: str) -> None:
+        """Promote an input that is a distribution, where it is splined from the spline's output."""
+        splined = name in self.options["design_distributions"]
+        # SplineComp's output has a leading axis of one.
+        self.promotes(component, inputs=[name], src_indices=om.slicer[0, :] if splined else None)
 
     def _add_splines(self) -> None:
         """Control points to stations, a spline for each design distribution."""

@@ -5,6 +5,7 @@ import openmdao.api as om
 import pytest
 from numpy.testing import assert_allclose
 
+from propmdao.aerodynamics.polars import polars_for
 from propmdao.components import DifferentialEvolutionDriver, GeometryComp
 from propmdao.fidelity import Fidelity
 from propmdao.propeller import load_propeller
@@ -65,11 +66,16 @@ def propeller():
 
 
 @pytest.fixture(scope="session")
-def meshes(propeller, small):
-    """Problem that holds ``lattice_nodes`` and ``surface_nodes`` of the small blade."""
+def polars(propeller):
+    return polars_for(propeller)
+
+
+@pytest.fixture(scope="session")
+def meshes(propeller, small, polars):
+    """Problem that holds the meshes of the small blade and its ``section_polars``."""
     prob = om.Problem(reports=False)
     prob.model.add_subsystem(
-        "comp", GeometryComp(propeller=propeller, fidelity=small), promotes=["*"]
+        "comp", GeometryComp(propeller=propeller, fidelity=small, polars=polars), promotes=["*"]
     )
     prob.setup()
     prob.run_model()
@@ -102,5 +108,61 @@ def assert_partials():
                     atol=tolerance * max(largest, 1e-3),
                     err_msg=f"{mode} of {of_wrt}",
                 )
+
+    return check
+
+
+@pytest.fixture(scope="session")
+def assert_directional():
+    """``assert_directional(prob, {input: scale}, tolerance)`` for ``prob.model.comp``.
+
+    For large inputs: derivatives along a random direction, whose entries are of the scale given, of
+    every output weighted at random, by reverse products against central differences at the best of
+    several steps. Curvature jumps in places, so that no one step suits every output. With
+    ``forward=True`` forward products are held to the reverse ones, too, which compiles for long.
+    """
+
+    def check(prob, scales, tolerance, forward=False):
+        comp, rng = prob.model.comp, np.random.default_rng(3)
+        inputs = {n: prob.get_val(n).copy() for n in comp.get_io_metadata(iotypes="input")}
+        outputs = {n: prob.get_val(n).copy() for n in comp.get_io_metadata(iotypes="output")}
+        assert set(scales) == set(inputs)
+        weights = {of: rng.standard_normal(value.shape) for of, value in outputs.items()}
+        along = {n: scale * rng.standard_normal(inputs[n].shape) for n, scale in scales.items()}
+        slopes = {of: gradients(comp, inputs, outputs, of, weights[of]) for of in outputs}
+        for name in scales:
+            exact = {of: np.vdot(slopes[of][name], along[name]) for of in outputs}
+            if forward:
+                d_outputs = {of: np.zeros_like(value) for of, value in outputs.items()}
+                comp.compute_jacvec_product(inputs, {name: along[name]}, d_outputs, "fwd")
+                for of, value in d_outputs.items():
+                    assert_allclose(
+                        np.vdot(weights[of], value), exact[of], rtol=1e-8,
+                        atol=1e-10 * np.abs(value).max(), err_msg=f"{of} by {name}",
+                    )  # fmt: skip
+            errors = {of: [] for of in outputs}
+            for h in (1.0, 0.1, 0.01, 0.001):
+                ends = []
+                for sign in (1.0, -1.0):
+                    prob.set_val(name, inputs[name] + sign * h * along[name])
+                    prob.run_model()
+                    ends.append({of: np.vdot(weights[of], prob.get_val(of)) for of in outputs})
+                for of, value in outputs.items():
+                    difference = (ends[0][of] - ends[1][of]) / (2.0 * h)
+                    largest = max(abs(exact[of]), 1e-4 * np.abs(value).max(), 1e-12)
+                    errors[of].append(float(abs(difference - exact[of]) / largest))
+            prob.set_val(name, inputs[name])
+            for of, error in errors.items():
+                assert min(error) < tolerance, f"{of} by {name}: {error}"
+
+    def gradients(comp, inputs, outputs, of, weight):
+        """Derivatives of one weighted output by every input."""
+        if not comp.matrix_free:
+            partials = {}
+            comp.compute_partials(inputs, partials)
+            return {n: (weight @ partials[of, n]).reshape(inputs[n].shape) for n in inputs}
+        d_inputs = {n: np.zeros_like(value) for n, value in inputs.items()}
+        comp.compute_jacvec_product(inputs, d_inputs, {of: weight}, "rev")
+        return d_inputs
 
     return check

@@ -73,9 +73,10 @@ def test_supersonic_tip_is_a_failed_analysis(problem):
 
 
 def test_observers_can_be_moved(problem):
+    problem.set_val("observer_position", 20.0 * OBSERVERS)
     problem.run_model()
     near = problem.get_val("oaspl_db").copy()
-    problem.set_val("observer_position", 2.0 * OBSERVERS)
+    problem.set_val("observer_position", 40.0 * OBSERVERS)
     problem.run_model()
-    # towards the far field a doubled distance costs 6.02 dB
-    assert_allclose(near - problem.get_val("oaspl_db"), 6.02, atol=0.3)
+    # in the far field a doubled distance costs 6.02 dB; at 38 m, some 20 wavelengths, nearly so
+    assert_allclose(near - problem.get_val("oaspl_db"), 6.02, atol=0.05)

@@ -9,6 +9,8 @@ import pytest
 from numpy.testing import assert_allclose
 from openmdao.utils.assert_utils import assert_check_partials
 
+from propmdao.aerodynamics.polars import blade_tables
+from propmdao.aerodynamics.strips import strip_radii
 from propmdao.components import GeometryComp
 from propmdao.geometry.blade import Blade, span_interpolation
 from propmdao.geometry.lattice import lattice_nodes, lattice_span
@@ -46,6 +48,28 @@ def test_partials(problem, propeller, camber):
     # central differences of a smooth function: truncation 1e-12, roundoff 1e-16 / 1e-6 = 1e-10
     data = prob.check_partials(out_stream=None, method="fd", form="central", step=1e-6)
     assert_check_partials(data, atol=1e-8, rtol=1e-7)
+
+
+def test_polars_of_the_sections_are_those_of_the_blade(meshes, propeller, polars):
+    stations = propeller.r_over_R
+    middle = span_interpolation(stations, strip_radii(stations[0], 4))
+    table = blade_tables(polars, Blade.from_propeller(propeller), middle)
+    assert_allclose(meshes.get_val("section_polars"), table.values, atol=1e-14)
+
+
+def test_partials_with_polars(problem, propeller, polars, assert_directional):
+    prob = problem(propeller=propeller, polars=polars)
+    prob.run_model()
+    scales = {
+        "chord_over_R": 1e-3,
+        "beta": 1e-3,
+        "sweep_over_R": 1e-3,
+        "rake_over_R": 1e-3,
+        "thickness_over_chord": 1e-3,
+        "camber_over_chord": 1e-4,
+    }
+    # truncation of 1e-8 at the finest step
+    assert_directional(prob, scales, 1e-7, forward=True)
 
 
 def test_both_ways_to_give_camber_are_the_same_blade(problem, propeller):

@@ -1,0 +1,174 @@
+"""Sections at work to broadband self-noise at observers."""
+
+from __future__ import annotations
+
+import dataclasses
+from typing import Any
+
+import jax.numpy as jnp
+import numpy as np
+from jax import Array
+
+from propmdao.acoustics.levels import energy_sum_db, level_db, level_dba
+from propmdao.aerodynamics.rings import vortex_rings
+from propmdao.aerodynamics.strips import Strips, blade_strips, strip_radii
+from propmdao.components.acoustics_comp import check_tip_speed
+from propmdao.components.jax_component import Arrays, JaxComponent
+from propmdao.fidelity import Fidelity
+from propmdao.geometry.blade import Blade, span_interpolation
+from propmdao.propeller import Propeller
+from propmdao.records import record
+from propmdao.self_noise import BANDS_HZ, self_noise
+
+_SILENCE_DB = -200.0
+
+
+class BroadbandComp(JaxComponent):
+    """Broadband self-noise by Brooks, Pope and Marcolini, at observers that fly along.
+
+    Names without a word are those of the tones, `oaspl_db` and `oaspl_dba` of `AcousticsComp`;
+    here are "broadband", the noise alone, and "total", tones and noise together.
+
+    Inputs
+    ------
+    lattice_nodes : (n_chordwise + 1, n_spanwise + 1, 3) array
+        Corner points of the lattice of blade 1, ``m``: its strips are the sections that sound.
+    section_speed : (n_spanwise,) array
+        Speed of the air relative to the sections, ``m/s``.
+    section_lift_coefficient : (n_spanwise,) array
+        Their lift coefficients, which tell the angle from zero lift.
+    thickness_over_chord : (n_stations,) array
+        Maximum thickness at the propeller's stations; with the propeller's section shapes, for the
+        trailing edge.
+    rpm : float
+        Rotation speed, ``rpm``.
+    speed : float
+        Axial flight speed, ``m/s``.
+    density, sound_speed : float
+        Of the undisturbed air, ``kg/m**3``, ``m/s``.
+    observer_position : (n_observers, 3) array
+        From the rotor centre, +z toward thrust, ``m``.
+    oaspl_db, oaspl_dba : (n_observers,) arrays
+        Levels of the tones that the totals take in; silence where they are not connected.
+
+    Outputs
+    -------
+    broadband_mean_square_pressure : (n_observers, n_bands) array
+        Of the noise in each third octave, ``Pa**2``; these add for any number of rotors.
+    band_frequency : (n_bands,) array
+        Mid-band frequencies, `propmdao.self_noise.BANDS_HZ`, ``Hz``.
+    oaspl_broadband_db, oaspl_broadband_dba : (n_observers,) arrays
+        Overall level of the noise alone, dB re 20 uPa, and A-weighted, dBA.
+    oaspl_total_db, oaspl_total_dba : (n_observers,) arrays
+        Overall level of tones and noise together, dB re 20 uPa, and A-weighted, dBA.
+
+    Options
+    -------
+    propeller : Propeller
+        Number of blades, stations, section shapes and initial thickness.
+    observers : (n_observers, 3) array
+        Initial `observer_position` [m]; `propmdao.acoustics.observers.arc` makes one.
+    fidelity : Fidelity
+        Numbers of panels.
+
+    Raises
+    ------
+    om.AnalysisError
+        When the blade tip is not slower than sound.
+    """
+
+    def initialize(self) -> None:
+        self.options.declare("propeller", types=Propeller, desc="Blades, stations, sections.")
+        self.options.declare("observers", types=np.ndarray, desc="Initial positions [m].")
+        self.options.declare("fidelity", Fidelity(), types=Fidelity, desc="Numbers of panels.")
+
+    def setup(self) -> None:
+        propeller, fidelity = self.options["propeller"], self.options["fidelity"]
+        observers = self.options["observers"]
+        nc, ns, n_observers = fidelity.n_chordwise, fidelity.n_spanwise, len(observers)
+        blade = Blade.from_propeller(propeller)
+        self.add_input("lattice_nodes", shape=(nc + 1, ns + 1, 3), units="m")
+        self.add_input("section_speed", shape=ns, units="m/s")
+        self.add_input("section_lift_coefficient", shape=ns)
+        self.add_input("thickness_over_chord", val=np.asarray(blade.thickness_over_chord))
+        self.add_input("rpm", val=4000.0, units="rpm")
+        self.add_input("speed", val=0.0, units="m/s")
+        self.add_input("density", val=1.225, units="kg/m**3")
+        self.add_input("sound_speed", val=340.294, units="m/s")
+        self.add_input("observer_position", val=observers, units="m")
+        self.add_input("oaspl_db", val=np.full(n_observers, _SILENCE_DB), desc="Of the tones.")
+        self.add_input("oaspl_dba", val=np.full(n_observers, _SILENCE_DB), desc="Of the tones.")
+        self.add_output(
+            "broadband_mean_square_pressure", shape=(n_observers, BANDS_HZ.size), units="Pa**2"
+        )
+        self.add_output("band_frequency", val=np.asarray(BANDS_HZ), units="Hz")
+        for name, desc in (
+            ("oaspl_broadband_db", "Overall level of broadband noise alone."),
+            ("oaspl_broadband_dba", "A-weighted level of broadband noise alone."),
+            ("oaspl_total_db", "Overall level of tones and broadband noise."),
+            ("oaspl_total_dba", "A-weighted level of tones and broadband noise."),
+        ):
+            self.add_output(name, shape=n_observers, desc=desc)
+        stations = propeller.r_over_R
+        radii = strip_radii(float(stations[0]), ns)
+        self.function = _broadband
+        self.static = int(propeller.n_blades)
+        self.constants = blade, span_interpolation(stations, radii)
+
+    def check(self, inputs: Any, values: Any) -> None:
+        check_tip_speed(inputs, "lattice_nodes")
+
+
+@record
+class _Sections:
+    relative_speed: Array
+    lift_coefficient: Array
+
+
+@record
+class _Solution:
+    """What `self_noise` reads of a solution of the lattice."""
+
+    strips: Strips
+    sections: _Sections
+
+
+def _broadband(inputs: Arrays, constants: Any, static: int) -> Arrays:
+    n_blades, (blade, section_radii) = static, constants
+    blade = dataclasses.replace(blade, thickness_over_chord=inputs["thickness_over_chord"])
+    nodes = inputs["lattice_nodes"]
+    solution: Any = _Solution(
+        blade_strips(nodes, vortex_rings(nodes), blade.radius),
+        _Sections(inputs["section_speed"], inputs["section_lift_coefficient"]),
+    )
+    rpm, speed, density, sound = (
+        inputs[name][0] for name in ("rpm", "speed", "density", "sound_speed")
+    )
+    heard = self_noise(
+        solution,
+        blade,
+        section_radii,
+        n_blades,
+        rpm * (np.pi / 30.0),
+        speed,
+        density,
+        sound,
+        inputs["observer_position"],
+    )
+    broadband_db, broadband_dba = (
+        level_db(heard.total.sum(axis=1)),
+        level_dba(BANDS_HZ, heard.total),
+    )
+    return {
+        "broadband_mean_square_pressure": heard.total,
+        "band_frequency": BANDS_HZ,
+        "oaspl_broadband_db": broadband_db,
+        "oaspl_broadband_dba": broadband_dba,
+        "oaspl_total_db": _together(inputs["oaspl_db"], broadband_db),
+        "oaspl_total_dba": _together(inputs["oaspl_dba"], broadband_dba),
+    }
+
+
+def _together(one_db: Array, other_db: Array) -> Array:
+    """Level of both (n_observers,)."""
+    return energy_sum_db(jnp.stack([one_db, other_db]), axis=0)

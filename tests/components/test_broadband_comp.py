@@ -1,0 +1,100 @@
+"""BroadbandComp: the noise of the physics, levels, derivatives, silence, a supersonic tip."""
+
+import numpy as np
+import openmdao.api as om
+import pytest
+from numpy.testing import assert_allclose
+
+from propmdao.acoustics.levels import a_weighting
+from propmdao.acoustics.observers import arc
+from propmdao.components import BroadbandComp
+from propmdao.self_noise import BANDS_HZ
+
+OBSERVERS = arc(1.9, [-45.0, -20.0])
+
+
+@pytest.fixture
+def problem(meshes, propeller, small):
+    prob = om.Problem(reports=False)
+    prob.model.add_subsystem(
+        "comp",
+        BroadbandComp(propeller=propeller, observers=OBSERVERS, fidelity=small),
+        promotes=["*"],
+    )
+    prob.setup()
+    prob.set_val("lattice_nodes", meshes.get_val("lattice_nodes"))
+    prob.set_val("section_speed", [14.0, 30.0, 47.0, 59.0])
+    prob.set_val("section_lift_coefficient", [0.9, 0.8, 0.7, 0.5])
+    prob.set_val("rpm", 4200.0)
+    prob.set_val("speed", 8.0)
+    return prob
+
+
+def level(mean_square):
+    return 10.0 * np.log10(mean_square / 20e-6**2)
+
+
+def test_levels_are_sums_over_the_bands(problem):
+    problem.run_model()
+    power = problem.get_val("broadband_mean_square_pressure")
+    assert_allclose(problem.get_val("band_frequency"), BANDS_HZ)
+    assert_allclose(problem.get_val("oaspl_broadband_db"), level(power.sum(axis=1)))
+    weighted = level((power * a_weighting(BANDS_HZ) ** 2).sum(axis=1))
+    assert_allclose(problem.get_val("oaspl_broadband_dba"), weighted)
+    assert (weighted > 20.0).all()
+
+
+def test_totals_are_the_noise_alone_until_tones_are_connected(problem):
+    problem.run_model()
+    for weighting in ("db", "dba"):
+        noise = problem.get_val(f"oaspl_broadband_{weighting}").copy()
+        assert_allclose(problem.get_val(f"oaspl_total_{weighting}"), noise)
+        # two equal levels make 3.01 dB more, and so do two that are not correlated
+        problem.set_val(f"oaspl_{weighting}", noise)
+        problem.run_model()
+        twice = noise + 10.0 * np.log10(2.0)
+        assert_allclose(problem.get_val(f"oaspl_total_{weighting}"), twice)
+
+
+def test_twice_as_far_is_six_decibels_quieter(problem):
+    problem.set_val("observer_position", 20.0 * OBSERVERS)
+    problem.run_model()
+    near = problem.get_val("oaspl_broadband_db").copy()
+    problem.set_val("observer_position", 40.0 * OBSERVERS)
+    problem.run_model()
+    assert_allclose(near - problem.get_val("oaspl_broadband_db"), 6.02, atol=0.05)
+
+
+def test_standing_still_is_silence(problem):
+    for name in ("rpm", "speed", "section_speed", "section_lift_coefficient"):
+        problem.set_val(name, 0.0)
+    problem.run_model()
+    for name in ("oaspl_broadband_db", "oaspl_broadband_dba"):
+        assert_allclose(problem.get_val(name), -200.0, atol=1e-3)
+
+
+@pytest.mark.parametrize("forward", [False, pytest.param(True, marks=pytest.mark.slow)])
+def test_broadband_partials(problem, assert_directional, forward):
+    problem.set_val("oaspl_db", 50.0)
+    problem.set_val("oaspl_dba", 35.0)
+    problem.run_model()
+    scales = {
+        "lattice_nodes": 1e-5,
+        "section_speed": 0.1,
+        "section_lift_coefficient": 1e-3,
+        "thickness_over_chord": 1e-3,
+        "rpm": 5.0,
+        "speed": 0.1,
+        "density": 1e-2,
+        "sound_speed": 1.0,
+        "observer_position": 1e-2,
+        "oaspl_db": 0.1,
+        "oaspl_dba": 0.1,
+    }
+    assert_directional(problem, scales, 1e-6, forward)
+
+
+def test_supersonic_tip_is_a_failed_analysis(problem):
+    problem.set_val("rpm", 24000.0)
+    with pytest.raises(om.AnalysisError, match="relative tip Mach number must be below 1"):
+        problem.run_model()
