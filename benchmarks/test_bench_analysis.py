@@ -16,7 +16,10 @@ import numpy as np
 import pytest
 
 from propmdao.aerodynamics.biot_savart import filament_velocities
+from propmdao.aerodynamics.polars import polars_for
+from propmdao.aerodynamics.section_laws import viscous_sections
 from propmdao.aerodynamics.steady import WAKE_AGES, solve_steady
+from propmdao.aerodynamics.strips import strip_radii
 from propmdao.aerodynamics.trim import solve_rotation_speed
 from propmdao.analysis import analyze
 from propmdao.fidelity import Fidelity
@@ -37,32 +40,64 @@ def nodes():
     return lattice_nodes(Blade.from_propeller(SLOW_FLYER), span, fidelity.n_chordwise)
 
 
+@pytest.fixture(scope="module", params=["viscous", "inviscid"])
+def sections(request):
+    """Return what the lattice is held to; the aim for viscous flow is twice the time at most."""
+    if request.param == "inviscid":
+        return None
+    stations = SLOW_FLYER.r_over_R
+    middle = span_interpolation(stations, strip_radii(stations[0], Fidelity().n_spanwise))
+    return viscous_sections(polars_for(SLOW_FLYER), Blade.from_propeller(SLOW_FLYER), middle, 340.0)
+
+
+@pytest.mark.parametrize("broadband", [False, True], ids=["tones", "broadband"])
+@pytest.mark.parametrize("viscous", [True, False], ids=["viscous", "inviscid"])
 @pytest.mark.parametrize("observers", [NINE[2:3], NINE], ids=["one", "nine"])
-def test_full_evaluation(benchmark, observers):
+def test_full_evaluation(benchmark, observers, viscous, broadband):
     """Geometry, trim, loads, tones on 65 x 80 panels, levels: what a user waits for."""
+    options = {"viscous": viscous, "broadband": broadband, "observers": observers}
 
     def evaluate():
-        analyze(SLOW_FLYER, thrust=THRUST, speed=SPEED, observers=observers).to_dict()
+        analyze(SLOW_FLYER, thrust=THRUST, speed=SPEED, **options).to_dict()
 
     benchmark.pedantic(evaluate, rounds=10, warmup_rounds=2)
 
 
-def test_steady_lattice(benchmark, nodes):
+def test_steady_lattice(benchmark, nodes, sections):
     """Loads at a rotation speed, with their wake."""
 
     def solve():
-        jax.block_until_ready(solve_steady(nodes, 2, RADIUS, OMEGA, SPEED, DENSITY))
+        jax.block_until_ready(solve_steady(nodes, 2, RADIUS, OMEGA, SPEED, DENSITY, sections))
 
     benchmark.pedantic(solve, rounds=10, warmup_rounds=2)
 
 
-def test_trim(benchmark, nodes):
+def test_gradient(benchmark, nodes, sections):
+    """Loads, and the adjoint of thrust and torque by all nodes and polars.
+
+    The aim is four times `test_steady_lattice`.
+    """
+
+    @jax.jit
+    def differentiate(nodes, sections):
+        def loads(nodes, sections):
+            solution = solve_steady(nodes, 2, RADIUS, OMEGA, SPEED, DENSITY, sections)
+            return jnp.stack([solution.thrust, solution.torque])
+
+        _, pull = jax.vjp(loads, nodes, sections)
+        return jax.vmap(pull)(jnp.eye(2))
+
+    benchmark.pedantic(
+        lambda: jax.block_until_ready(differentiate(nodes, sections)), rounds=10, warmup_rounds=2
+    )
+
+
+def test_trim(benchmark, nodes, sections):
     """Rotation speed for a thrust."""
+    required = SPEED, DENSITY, THRUST, 366.0, 576.0
 
     def solve():
-        jax.block_until_ready(
-            solve_rotation_speed(nodes, 2, RADIUS, SPEED, DENSITY, THRUST, 366.0, 576.0)
-        )
+        jax.block_until_ready(solve_rotation_speed(nodes, 2, RADIUS, *required, sections))
 
     benchmark.pedantic(solve, rounds=10, warmup_rounds=2)
 
