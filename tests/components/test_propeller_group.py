@@ -163,8 +163,9 @@ def test_totals_against_differences(problem, trim, speed):
     """From blade, operating point and observers to loads and noise, trim in between.
 
     Along a random direction for each input, against differences of fourth order at the best of
-    several steps: the curvature of polars jumps in places, so that no one step suits all. Hover is
-    the least speed, so its derivatives are checked a little beside it.
+    several steps: the curvature of polars and of the fits of broadband noise jumps in places, so
+    that no one step suits all. Hover is the least speed, so its derivatives are checked a little
+    beside it.
     """
     prob = problem(
         trim=trim,
@@ -196,7 +197,7 @@ def test_totals_against_differences(problem, trim, speed):
         start = prob.get_val(name).copy()
         along = scale * rng.standard_normal(start.shape)
         errors = []
-        for step in (1.0, 0.3, 0.1, 0.03, 0.01, 0.003, 0.001):
+        for step in (1.0, 0.3, 0.1, 0.03, 0.01, 1e-3, 1e-4):
             at = {}
             for k in (-2, -1, 1, 2):
                 prob.set_val(name, start + k * step * along)
@@ -214,8 +215,8 @@ def test_totals_against_differences(problem, trim, speed):
             exact = totals[one, name] @ along.ravel()
             largest = max(np.abs(exact).max(), 1e-6 * np.abs(prob.get_val(one)).max())
             error = [np.abs(slopes[one] - exact).max() / largest for slopes in errors]
-            # the fits of broadband noise have rounded corners, one or the other within any step
-            tolerance = 1e-4 if one in ("oaspl_broadband_db", "oaspl_total_dba") else 1e-6
+            # noise has corners in every band: none is left only where the root's 1e-9 shows
+            tolerance = 1e-5 if one in ("oaspl_broadband_db", "oaspl_total_dba") else 1e-6
             assert min(error) < tolerance, f"{one} by {name}: {error}"
 
 
