@@ -23,11 +23,12 @@ OPENMDAO_NAMES = {
     "openmdao_component": [
         "AcousticsComp",
         "AerodynamicsComp",
+        "BroadbandComp",
         "GeometryComp",
         "RotationSpeedComp",
     ],
     "openmdao_group": ["PropellerGroup"],
-    "openmdao_driver": ["DifferentialEvolutionDriver"],
+    "openmdao_driver": ["DifferentialEvolutionDriver", "SweepDriver"],
 }
 
 
