@@ -230,7 +230,7 @@ def test_unreachable_thrust_is_a_failed_analysis(problem):
 
 
 def quieter(problem, driver):
-    """Twist and chord for less noise below the rotor at the torque of the start, 0.0273 N m, or a little more."""
+    """Twist and chord for less noise below the rotor at about the torque of the start."""
     prob = problem(
         driver,
         design_distributions={"beta": [0.15, 0.5, 1.0], "chord_over_R": [0.15, 0.5, 1.0]},
