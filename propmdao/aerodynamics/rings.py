@@ -18,7 +18,7 @@ from propmdao.geometry.lattice import lattice_chord_fraction
 from propmdao.records import Scalar, record
 
 # Bound vortices need no physical core; this one only keeps a segment's velocity on itself at zero.
-_BOUND_CORE = 1.0e-4
+BOUND_CORE = 1.0e-4  # of the radius
 
 
 @record
@@ -166,7 +166,7 @@ def blade_influence(points: Array, rings: Rings, n_blades: int, radius: Scalar) 
         on_every_blade(jnp.concatenate([b.reshape(-1, 3), c.reshape(-1, 3)]), n_blades)
         for b, c in ((root, ahead), (tip, behind))
     )
-    velocity = segment_velocities(points, start, end, _BOUND_CORE * radius)
+    velocity = segment_velocities(points, start, end, BOUND_CORE * radius)
     bound = velocity[:, : nc * ns].reshape(3, nc, ns, -1)
     chordwise = velocity[:, nc * ns :].reshape(3, nc, ns + 1, -1)
     ring = bound + chordwise[:, :, 1:] - chordwise[:, :, :-1]

@@ -50,7 +50,7 @@ def decreasing_root(
         return (state[0] < _MAX_EVALUATIONS) & ~state[-1]
 
     def step(state: Any) -> Any:
-        count, lo, hi, x, x_before, f_before, moved, _, last, _ = state
+        count, lo, hi, x, x_before, f_before, _, last, _ = state
         f, results = residual(x)
         lo, hi = jnp.where(f > 0.0, x, lo), jnp.where(f > 0.0, hi, x)
         # The first step has no secant: bisecting would throw the guess away, so move as if the
@@ -63,13 +63,13 @@ def decreasing_root(
         close = close | (jnp.abs(f) <= tolerance * jnp.abs(following))
         # Where the next trial will do, it is evaluated once more, for the results there.
         following = jnp.where(last, x, following)
-        return count + 1, lo, hi, following, x, f, x - x_before, results, close, last
+        return count + 1, lo, hi, following, x, f, results, close, last
 
     none, no = jnp.asarray(jnp.inf), jnp.asarray(False)
     ends = (jnp.asarray(value, float) for value in (low, high, guess))
-    start: Any = (0, *ends, none, none, none, empty(residual, guess)[1], no, no)
+    start: Any = (0, *ends, none, none, empty(residual, guess)[1], no, no)
     state = jax.lax.while_loop(unfinished, step, start)
-    return state[3], state[7]
+    return state[3], state[6]
 
 
 def empty(function: Callable[..., Results], *arguments: Any) -> Results:

@@ -21,6 +21,7 @@ from propmdao.aerodynamics.lattice_loads import (
     lattice_geometry,
     loads_with_wake,
 )
+from propmdao.aerodynamics.rings import BOUND_CORE
 from propmdao.aerodynamics.roots import at_root, decreasing_root
 from propmdao.aerodynamics.section_laws import ViscousSections
 from propmdao.aerodynamics.solution import SETTLED, SteadySolution, strip_loads
@@ -38,7 +39,6 @@ from propmdao.records import PointLoads, Scalar, record
 WAKE_AGES = wake_azimuths(
     turns=6.0, first_step=np.radians(10.0), growth=1.1, last_step=np.radians(30.0)
 )
-_INITIAL_CORE = 1.0e-4  # of the radius
 _KINEMATIC_VISCOSITY = 1.46e-5  # air at 15 C [m^2/s]; only the wake's core knows it
 _TOLERANCE = 1.0e-9  # relative, in the induced velocity
 _GUESS = 0.05  # of the tip speed
@@ -114,7 +114,7 @@ def loads_at(
     radius, omega = flow.radius, flow.rotation_speed
     trailing = flow.lattice.rings.corner[-1]
     wake = helical_wake(trailing, ages, n_blades, radius, omega, flow.speed, induced_velocity)
-    core = core_radius(ages, omega, _KINEMATIC_VISCOSITY, _INITIAL_CORE * radius)
+    core = core_radius(ages, omega, _KINEMATIC_VISCOSITY, BOUND_CORE * radius)
     return loads_with_wake(
         flow.lattice,
         wake,
