@@ -6,6 +6,7 @@ from propmdao.components.broadband_comp import BroadbandComp
 from propmdao.components.constrained_search import Generation
 from propmdao.components.differential_evolution_driver import DifferentialEvolutionDriver
 from propmdao.components.geometry_comp import GeometryComp
+from propmdao.components.noise_objective_comp import NoiseObjectiveComp
 from propmdao.components.propeller_group import PropellerGroup
 from propmdao.components.rotation_speed_comp import RotationSpeedComp
 from propmdao.components.sweep_driver import SweepDriver
@@ -17,6 +18,7 @@ __all__ = [
     "DifferentialEvolutionDriver",
     "Generation",
     "GeometryComp",
+    "NoiseObjectiveComp",
     "PropellerGroup",
     "RotationSpeedComp",
     "SweepDriver",
