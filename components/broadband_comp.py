@@ -11,14 +11,13 @@ from jax import Array
 
 from propmdao.acoustics.levels import energy_sum_db, level_db, level_dba
 from propmdao.aerodynamics.rings import vortex_rings
-from propmdao.aerodynamics.strips import Strips, blade_strips, strip_radii
+from propmdao.aerodynamics.strips import blade_strips, strip_radii
 from propmdao.components.acoustics_comp import check_tip_speed
 from propmdao.components.jax_component import Arrays, JaxComponent
 from propmdao.fidelity import Fidelity
 from propmdao.geometry.blade import Blade, span_interpolation
 from propmdao.propeller import Propeller
-from propmdao.records import record
-from propmdao.self_noise import BANDS_HZ, self_noise
+from propmdao.self_noise import BANDS_HZ, self_noise, strip_flow
 
 _SILENCE_DB = -200.0
 
@@ -119,35 +118,22 @@ class BroadbandComp(JaxComponent):
         check_tip_speed(inputs, "lattice_nodes")
 
 
-@record
-class _Sections:
-    relative_speed: Array
-    lift_coefficient: Array
-
-
-@record
-class _Solution:
-    """What `self_noise` reads of a solution of the lattice."""
-
-    strips: Strips
-    sections: _Sections
-
-
 def _broadband(inputs: Arrays, constants: Any, static: int) -> Arrays:
     n_blades, (blade, section_radii) = static, constants
     blade = dataclasses.replace(blade, thickness_over_chord=inputs["thickness_over_chord"])
     nodes = inputs["lattice_nodes"]
-    solution: Any = _Solution(
+    flow = strip_flow(
         blade_strips(nodes, vortex_rings(nodes), blade.radius),
-        _Sections(inputs["section_speed"], inputs["section_lift_coefficient"]),
+        inputs["section_speed"],
+        inputs["section_lift_coefficient"],
+        blade,
+        section_radii,
     )
     rpm, speed, density, sound = (
         inputs[name][0] for name in ("rpm", "speed", "density", "sound_speed")
     )
     heard = self_noise(
-        solution,
-        blade,
-        section_radii,
+        flow,
         n_blades,
         rpm * (np.pi / 30.0),
         speed,

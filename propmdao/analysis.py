@@ -31,7 +31,7 @@ from propmdao.geometry.blade import Blade, span_interpolation
 from propmdao.geometry.meshes import MeshRadii, blade_meshes, mesh_radii
 from propmdao.geometry.surface import Panels, surface_panels
 from propmdao.propeller import Propeller
-from propmdao.self_noise import self_noise
+from propmdao.self_noise import self_noise, strip_flow
 
 SOUND_SPEED = 340.294
 
@@ -134,9 +134,11 @@ def analyze(
     )
     noise = None
     if broadband:
-        noise = self_noise(
-            steady, blade, section_radii, propeller.n_blades, omega, *air, SOUND_SPEED, positions
+        states = steady.sections
+        flow = strip_flow(
+            steady.strips, states.relative_speed, states.lift_coefficient, blade, section_radii
         )
+        noise = self_noise(flow, propeller.n_blades, omega, *air, SOUND_SPEED, positions)
     of = coefficients(steady.thrust, steady.torque, omega, *air, propeller.diameter)
     return Analysis(float(rpm), *air, viscous, steady, of, points, heard, noise)
 

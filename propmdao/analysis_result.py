@@ -10,10 +10,10 @@ import numpy as np
 import numpy.typing as npt
 from jax import Array
 
-from propmdao.acoustics.broadband import SelfNoise
+from propmdao.acoustics.bands import tones_in_bands
+from propmdao.acoustics.broadband import SelfNoise, third_octave_centers
 from propmdao.acoustics.formulation1a import Tones
 from propmdao.acoustics.levels import (
-    REFERENCE_PRESSURE,
     level_db,
     level_dba,
     mean_square,
@@ -105,12 +105,11 @@ class Analysis:
                 for m, f in enumerate(frequency)
             ],
         }
-        center, band = third_octave(frequency, self.tones.total[i])
         if self.broadband is not None:
             noise = {name: np.asarray(getattr(self.broadband, name))[i] for name in MECHANISMS} | {
                 "spl": np.asarray(self.broadband.total)[i]
             }
-            center, band = _with_noise(center, band, noise["spl"])
+            center, band = _with_noise(self.tones, i, noise["spl"])
             result |= _total(self.tones, i, noise["spl"])
             in_bands = {name: np.asarray(level_db(power)) for name, power in noise.items()}
             result["broadband"] = [
@@ -118,6 +117,8 @@ class Analysis:
                 | {f"{name}_db": float(level[k]) for name, level in in_bands.items()}
                 for k, f in enumerate(BANDS_HZ)
             ]
+        else:
+            center, band = third_octave(frequency, self.tones.total[i])
         result["third_octave"] = [
             {"frequency_hz": float(f), "spl_db": float(level)}
             for f, level in zip(center, band, strict=True)
@@ -126,16 +127,16 @@ class Analysis:
 
 
 def _with_noise(
-    center: npt.NDArray[np.float64], band: npt.NDArray[np.float64], noise: npt.NDArray[np.float64]
+    tones: Tones, i: int, noise: npt.NDArray[np.float64]
 ) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float64]]:
-    """Levels in all bands of tones or noise."""
-    # Both are exact mid-band frequencies, but computed in two ways.
-    numbers, known = (np.rint(10.0 * np.log10(f / 1000.0)) for f in (center, BANDS_HZ))
-    everywhere = np.union1d(numbers, known)
-    power = np.zeros(everywhere.size)
-    power[np.searchsorted(everywhere, numbers)] += REFERENCE_PRESSURE**2 * 10 ** (band / 10)
-    power[np.searchsorted(everywhere, known)] += noise
-    return 1000.0 * 10.0 ** (everywhere / 10.0), np.asarray(level_db(power))
+    """Levels in all bands of tones or noise, and those between."""
+    frequency = np.asarray(tones.frequency_hz)
+    known = np.concatenate([BANDS_HZ, frequency[frequency > 0.0]])
+    center = third_octave_centers(known.min(), known.max())
+    power = np.array(tones_in_bands(frequency, mean_square(tones.total[i]), center))
+    first = int(np.argmin(np.abs(center - BANDS_HZ[0])))
+    power[first : first + BANDS_HZ.size] += noise
+    return center, np.asarray(level_db(power))
 
 
 def _total(tones: Tones, i: int, noise: npt.NDArray[np.float64]) -> dict[str, float]:

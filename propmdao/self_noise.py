@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from functools import partial
-
 import jax
 import jax.numpy as jnp
 from jax import Array
+from jax.typing import ArrayLike
 
 from propmdao.acoustics.broadband import (
     Section,
@@ -15,8 +14,9 @@ from propmdao.acoustics.broadband import (
     rotor_self_noise,
     third_octave_centers,
 )
+from propmdao.acoustics.broadband.boundary_layer import Trip
 from propmdao.aerodynamics.section_laws import AIR_VISCOSITY
-from propmdao.aerodynamics.solution import SteadySolution
+from propmdao.aerodynamics.strips import Strips
 from propmdao.geometry.blade import Blade, SpanInterpolation
 from propmdao.geometry.trailing_edge import trailing_edge
 from propmdao.records import Scalar
@@ -25,13 +25,22 @@ from propmdao.records import Scalar
 BANDS_HZ = third_octave_centers(50.0, 20e3)
 
 
-def strip_flow(steady: SteadySolution, blade: Blade, section_radii: SpanInterpolation) -> StripFlow:
+@jax.jit
+def strip_flow(
+    strips: Strips,
+    relative_speed: Array,
+    lift_coefficient: Array,
+    blade: Blade,
+    section_radii: SpanInterpolation,
+) -> StripFlow:
     """Strips of the lattice as broadband noise sees them.
 
     Parameters
     ----------
-    steady : SteadySolution
-        Loads.
+    strips : Strips
+        Sections of blade 1.
+    relative_speed, lift_coefficient : (ns,) arrays
+        How they work: speed of the air over them [m/s], and lift.
     blade : Blade
         The blade that was solved, for the shape of its trailing edge.
     section_radii : SpanInterpolation
@@ -47,15 +56,14 @@ def strip_flow(steady: SteadySolution, blade: Blade, section_radii: SpanInterpol
     The angle from zero lift is cl / (2 pi). Deep in stall, where lift no longer tells the angle,
     separation noise comes out low.
     """
-    strips, states = steady.strips, steady.sections
     # The report's angles are those of a symmetric section to its stream. A cambered section loads
     # its boundary layers alike at the same lift: the angle at which a thin section has it.
     blunt, angle = trailing_edge(blade, section_radii)
     section = Section(
         chord=strips.chord,
         span=strips.width,
-        speed=states.relative_speed,
-        angle_of_attack=states.lift_coefficient / (2.0 * jnp.pi),
+        speed=relative_speed,
+        angle_of_attack=lift_coefficient / (2.0 * jnp.pi),
         trailing_edge_thickness=blunt * strips.chord,
         trailing_edge_angle=angle,
     )
@@ -63,24 +71,22 @@ def strip_flow(steady: SteadySolution, blade: Blade, section_radii: SpanInterpol
     return StripFlow(edge, strips.backward, jnp.cross(strips.upward, strips.backward), section)
 
 
-@partial(jax.jit, static_argnames="n_blades")
 def self_noise(
-    steady: SteadySolution,
-    blade: Blade,
-    section_radii: SpanInterpolation,
+    flow: StripFlow,
     n_blades: int,
     rotation_speed: Scalar,
     speed: Scalar,
     density: Scalar,
     sound_speed: Scalar,
-    observers: Array,
+    observers: ArrayLike,
+    trip: Trip = "none",
 ) -> SelfNoise:
     """Self-noise in the bands `BANDS_HZ`.
 
     Parameters
     ----------
-    steady, blade, section_radii
-        As `strip_flow` takes them.
+    flow : StripFlow
+        Of `strip_flow`.
     n_blades : int
         Number of equally spaced blades.
     rotation_speed, speed, density, sound_speed : float
@@ -88,6 +94,8 @@ def self_noise(
         sound [m/s].
     observers : (n_observers, 3) array
         From the rotor centre, flying along [m].
+    trip : {"none", "light", "heavy"}
+        How the boundary layers are tripped.
 
     Returns
     -------
@@ -95,7 +103,7 @@ def self_noise(
         Mean squares of each mechanism, (n_observers, n_bands) [Pa^2].
     """
     return rotor_self_noise(
-        strip_flow(steady, blade, section_radii),
+        flow,
         n_blades,
         rotation_speed,
         speed,
@@ -103,4 +111,5 @@ def self_noise(
         AIR_VISCOSITY / density,
         observers,
         BANDS_HZ,
+        trip=trip,
     )

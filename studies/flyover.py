@@ -100,7 +100,9 @@ def broadband_bands(found: Analysis, times: np.ndarray, trip: Trip = "none") -> 
     """Third octaves of the self-noise without ground or absorption, (n_times, n_bands) [Pa^2]."""
     r = PROPELLER.r_over_R
     at = span_interpolation(r, strip_radii(r[0], RESOLUTION.n_spanwise))
-    strips = strip_flow(found.steady, Blade.from_propeller(PROPELLER), at)
+    states = found.steady.sections
+    strips = strip_flow(found.steady.strips, states.relative_speed, states.lift_coefficient,
+                        Blade.from_propeller(PROPELLER), at)  # fmt: skip
     doppler = np.asarray(sight(times).doppler)[0]
     # Whoever flies along is for a moment where the microphone is: pressure is the same for both,
     # frequencies are those of flying along times Doppler's factor.

@@ -41,7 +41,9 @@ def cruise():
 
 @pytest.fixture(scope="module")
 def strips(cruise):
-    return strip_flow(cruise.steady, BLADE, RADII)
+    states = cruise.steady.sections
+    flow = states.relative_speed, states.lift_coefficient
+    return strip_flow(cruise.steady.strips, *flow, BLADE, RADII)
 
 
 @pytest.fixture(scope="module")

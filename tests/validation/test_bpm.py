@@ -14,12 +14,12 @@ import pytest
 
 from propmdao.acoustics.broadband import (
     Section,
-    band_level_db,
     boundary_layer,
     radiation,
     trailing_edge_noise,
 )
 from propmdao.acoustics.broadband.turbulent_spectra import amplitude_k1, shape_a, shape_b
+from propmdao.acoustics.levels import level_db
 
 NOMINAL = np.array(
     [m * 10**k for k in range(2, 5) for m in (1, 1.25, 1.6, 2, 2.5, 3.15, 4, 5, 6.3, 8)]
@@ -35,7 +35,7 @@ def levels(frequency, values, viscosity, sound_speed, distance, trip):
     layer = boundary_layer(section.chord, section.speed, section.angle_of_attack, viscosity, trip)
     toward = radiation(0.0, 0.0, distance, section.speed / sound_speed)
     edge = trailing_edge_noise(frequency, section, layer, toward, sound_speed, viscosity, trip)
-    return {name: np.asarray(band_level_db(p)) for name, p in edge._asdict().items()}
+    return {name: np.asarray(level_db(p)) for name, p in edge._asdict().items()}
 
 
 def test_table_d2(reference_data):

@@ -6,7 +6,6 @@ from propmdao.acoustics.broadband.rotor import StripFlow, rotor_self_noise
 from propmdao.acoustics.broadband.section import Section
 from propmdao.acoustics.broadband.self_noise import (
     SelfNoise,
-    band_level_db,
     third_octave_centers,
     tip_noise,
     trailing_edge_noise,
@@ -18,7 +17,6 @@ __all__ = [
     "Section",
     "SelfNoise",
     "StripFlow",
-    "band_level_db",
     "boundary_layer",
     "radiation",
     "rotor_self_noise",

@@ -37,8 +37,6 @@ from propmdao.records import record
 #: Shape of the blade tip seen from above the blade.
 Tip = Literal["rounded", "square"]
 
-_SILENCE = 1e-20  # of the reference mean square: -200 dB
-
 
 @record
 class SelfNoise:
@@ -98,22 +96,6 @@ def third_octave_centers(lowest_hz: float = 100.0, highest_hz: float = 80e3) -> 
     first, last = (round(10 * np.log10(f / 1000)) for f in (lowest_hz, highest_hz))
     centers: NDArray[np.float64] = 1000 * 10 ** (np.arange(first, last + 1) / 10)
     return centers
-
-
-def band_level_db(mean_square: ArrayLike) -> Array:
-    """Level of a mean-square pressure.
-
-    Parameters
-    ----------
-    mean_square : array
-        Mean-square pressure [Pa^2].
-
-    Returns
-    -------
-    array
-        Level [dB re 20 uPa], at least -200.
-    """
-    return 10 * jnp.log10(jnp.asarray(mean_square) / REFERENCE_PRESSURE**2 + _SILENCE)
 
 
 def trailing_edge_noise(

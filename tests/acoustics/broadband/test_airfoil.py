@@ -11,13 +11,13 @@ import pytest
 from jax.test_util import check_grads
 
 from propmdao.acoustics.broadband import (
-    band_level_db,
     boundary_layer,
     radiation,
     third_octave_centers,
     tip_noise,
     trailing_edge_noise,
 )
+from propmdao.acoustics.levels import level_db
 
 C, NU = 340.0, 1.5e-5
 BANDS = third_octave_centers(200, 20e3)
@@ -111,7 +111,7 @@ def test_nothing_jumps_over_angle_speed_and_edge_thickness(section):
     def largest_step(name, values):
         s = section(**{name: values})
         s = dataclasses.replace(s, **{k: v[:, None] for k, v in s.__dict__.items() if v.ndim})
-        level = jax.jit(lambda s: band_level_db(sum(noise(s, bands=BANDS[2::6]))))(s)
+        level = jax.jit(lambda s: level_db(sum(noise(s, bands=BANDS[2::6]))))(s)
         return np.abs(np.diff(np.asarray(level), axis=0)).max()
 
     for name, values in (
@@ -147,7 +147,7 @@ def test_derivatives_are_finite_where_nothing_is_left(section, changes):
 
     def total(at):
         vortex = tip_noise(BANDS, at.chord, at.speed, at.angle_of_attack, 1.0, C)
-        return jnp.sum(band_level_db(sum(noise(at)) + vortex))
+        return jnp.sum(level_db(sum(noise(at)) + vortex))
 
     value, slopes = jax.value_and_grad(total)(s)
     assert np.isfinite(value)
@@ -163,5 +163,5 @@ def test_tip_vortex_as_printed(tip):
     m_max = m * (1 + 0.036 * 5)
     st = BANDS * length / (m_max * C)
     level = 10 * np.log10(m**2 * m_max**3 * length**2) - 30.5 * (np.log10(st) + 0.3) ** 2 + 126
-    got = band_level_db(tip_noise(BANDS, c, u, np.radians(5.0), 1.0, C, tip))
+    got = level_db(tip_noise(BANDS, c, u, np.radians(5.0), 1.0, C, tip))
     np.testing.assert_allclose(got, level, atol=1e-6)

@@ -11,13 +11,13 @@ import pytest
 
 from propmdao.acoustics import arc
 from propmdao.acoustics.broadband import (
-    band_level_db,
     boundary_layer,
     radiation,
     rotor_self_noise,
     third_octave_centers,
     trailing_edge_noise,
 )
+from propmdao.acoustics.levels import level_db
 
 C, NU = 340.0, 1.5e-5
 BANDS = third_octave_centers(315, 20e3)
@@ -68,9 +68,7 @@ def test_blades_add(strips):
 def test_default_number_of_azimuths_is_enough(strips):
     # Away from the rotor plane; see the note of rotor_self_noise on the chord line.
     below = arc(1.5, [-45.0, -20.0])
-    coarse, fine = (
-        band_level_db(hear(strips, n_azimuths=n, observers=below).total) for n in (24, 96)
-    )
+    coarse, fine = (level_db(hear(strips, n_azimuths=n, observers=below).total) for n in (24, 96))
     np.testing.assert_allclose(coarse, fine, atol=0.1)
 
 
@@ -109,7 +107,7 @@ def test_standstill_is_silent_and_differentiable(strips):
 
     def loudness(section, omega):
         heard = hear(dataclasses.replace(strips, section=section), omega=omega)
-        return jnp.sum(band_level_db(heard.total))
+        return jnp.sum(level_db(heard.total))
 
     value, slopes = jax.value_and_grad(loudness, argnums=(0, 1))(still, 0.0)
     assert float(value) < -195 * BANDS.size * len(OBSERVERS)
@@ -120,7 +118,7 @@ def test_derivative_through_the_rotor(strips):
     def loudness(angle, omega):
         section = dataclasses.replace(strips.section, angle_of_attack=angle)
         heard = hear(dataclasses.replace(strips, section=section), omega=omega)
-        return jnp.sum(band_level_db(heard.total))
+        return jnp.sum(level_db(heard.total))
 
     angle, step = strips.section.angle_of_attack, jnp.linspace(1.0, 2.0, 6)
     slope_angle, slope_omega = jax.grad(loudness, argnums=(0, 1))(angle, 440.0)

@@ -8,11 +8,11 @@ import pytest
 
 from propmdao.acoustics.broadband import (
     Section,
-    band_level_db,
     boundary_layer,
     radiation,
     trailing_edge_noise,
 )
+from propmdao.acoustics.levels import level_db
 
 SOUND_SPEED, VISCOSITY = 340.46, 1.4529e-5
 # Hz, dB: pressure side, suction side, separation, laminar shedding, total. Below -100 dB the
@@ -45,8 +45,7 @@ def levels():
     toward = radiation(0.0, 0.0, 1.22, 71.3 / SOUND_SPEED)
     edge = trailing_edge_noise(TABLE[:, 0], section, layer, toward, SOUND_SPEED, VISCOSITY)
     return {
-        name: np.asarray(band_level_db(p))
-        for name, p in (edge._asdict() | {"total": sum(edge)}).items()
+        name: np.asarray(level_db(p)) for name, p in (edge._asdict() | {"total": sum(edge)}).items()
     }
 
 
