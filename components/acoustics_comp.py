@@ -9,16 +9,18 @@ import openmdao.api as om
 
 from propmdao.acoustics.formulation1a import require_subsonic_tip, tones
 from propmdao.acoustics.levels import oaspl_db, oaspl_dba, spl_db
-from propmdao.components.jax_component import Arrays, JaxComponent
+from propmdao.components.jax_component import Arrays
+from propmdao.components.operating_points import STATIC, OperatingPointsComp
 from propmdao.fidelity import Fidelity
 from propmdao.geometry.surface import surface_panels
 from propmdao.records import PointLoads
 
 
-class AcousticsComp(JaxComponent):
+class AcousticsComp(OperatingPointsComp):
     """Tonal noise by Formulation 1A, at observers that fly along with the rotor.
 
-    Usable alone, with blade loads from elsewhere.
+    Usable alone, with blade loads from elsewhere. With `num_nodes` everything but the surface and
+    the observers has a leading axis of that many operating points.
 
     Inputs
     ------
@@ -52,6 +54,8 @@ class AcousticsComp(JaxComponent):
 
     Options
     -------
+    num_nodes : int or None
+        Number of operating points; None is a single one, with the shapes above.
     n_blades : int
         Number of equally spaced blades.
     n_loads : int
@@ -64,10 +68,11 @@ class AcousticsComp(JaxComponent):
     Raises
     ------
     om.AnalysisError
-        When the blade tip is not slower than sound.
+        When the blade tip is not slower than sound, with the node where there are several.
     """
 
     def initialize(self) -> None:
+        super().initialize()
         self.options.declare("n_blades", types=int, desc="Number of blades.")
         self.options.declare("n_loads", types=int, desc="Number of point forces.")
         self.options.declare("observers", types=np.ndarray, desc="Initial positions [m].")
@@ -77,14 +82,16 @@ class AcousticsComp(JaxComponent):
         fidelity, observers = self.options["fidelity"], self.options["observers"]
         n_observers, n_loads = len(observers), self.options["n_loads"]
         surface = (fidelity.n_contour, fidelity.n_surface_span, 3)
-        self.add_input("surface_nodes", shape=surface, units="m")
-        self.add_input("load_position", shape=(n_loads, 3), units="m")
-        self.add_input("load_force", shape=(n_loads, 3), units="N", desc="Force on the fluid.")
-        self.add_input("rpm", val=4000.0, units="rpm")
-        self.add_input("speed", val=0.0, units="m/s")
-        self.add_input("density", val=1.225, units="kg/m**3")
-        self.add_input("sound_speed", val=340.294, units="m/s")
-        self.add_input("observer_position", val=observers, units="m")
+        self.add_input("surface_nodes", shape=surface, units="m", tags=STATIC)
+        self.add_point_input("load_position", shape=(n_loads, 3), units="m")
+        self.add_point_input(
+            "load_force", shape=(n_loads, 3), units="N", desc="Force on the fluid."
+        )
+        self.add_point_input("rpm", val=4000.0, units="rpm")
+        self.add_point_input("speed", val=0.0, units="m/s")
+        self.add_point_input("density", val=1.225, units="kg/m**3")
+        self.add_point_input("sound_speed", val=340.294, units="m/s")
+        self.add_input("observer_position", val=observers, units="m", tags=STATIC)
         for name, desc in (
             ("spl_bpf_db", "Level of the blade-passage tone."),
             ("oaspl_db", "Overall level of the tones."),
@@ -92,11 +99,11 @@ class AcousticsComp(JaxComponent):
             ("oaspl_loading_db", "Overall level of loading noise alone."),
             ("oaspl_dba", "A-weighted overall level of the tones."),
         ):
-            self.add_output(name, shape=n_observers, desc=desc)
-        self.add_output(
+            self.add_point_output(name, shape=(n_observers,), desc=desc)
+        self.add_point_output(
             "mean_square_pressure", shape=(n_observers, fidelity.n_harmonics), units="Pa**2"
         )
-        self.add_output("frequency", shape=fidelity.n_harmonics, units="Hz")
+        self.add_point_output("frequency", shape=(fidelity.n_harmonics,), units="Hz")
         self.function = _levels
         self.static = (self.options["n_blades"], fidelity.n_harmonics)
 

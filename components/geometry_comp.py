@@ -11,6 +11,7 @@ import openmdao.api as om
 from propmdao.aerodynamics.polars import SectionPolars, blade_tables
 from propmdao.aerodynamics.strips import strip_radii
 from propmdao.components.jax_component import Arrays, JaxComponent
+from propmdao.components.operating_points import STATIC
 from propmdao.fidelity import Fidelity
 from propmdao.geometry.blade import Blade, design_lift_coefficient, span_interpolation
 from propmdao.geometry.meshes import blade_meshes, mesh_radii
@@ -100,7 +101,7 @@ class GeometryComp(JaxComponent):
     def setup(self) -> None:
         propeller, fidelity = self.options["propeller"], self.options["fidelity"]
         for name, value in blade_distributions(propeller, self.options["camber"]).items():
-            self.add_input(name, val=value, units="rad" if name == "beta" else None)
+            self.add_input(name, val=value, units="rad" if name == "beta" else None, tags=STATIC)
         self.add_output(
             "lattice_nodes",
             shape=(fidelity.n_chordwise + 1, fidelity.n_spanwise + 1, 3),

@@ -66,6 +66,62 @@ def test_acoustic_partials(problem, assert_partials):
     assert_partials(problem, steps, 1e-5)
 
 
+def at_nodes(meshes, small, num_nodes, **values):
+    prob = om.Problem(reports=False)
+    comp = AcousticsComp(
+        n_blades=2, n_loads=3, observers=OBSERVERS, fidelity=small, num_nodes=num_nodes
+    )
+    prob.model.add_subsystem("comp", comp, promotes=["*"])
+    prob.setup()
+    prob.set_val("surface_nodes", meshes.get_val("surface_nodes"))
+    for name, value in {"load_position": POSITION, "load_force": FORCE, **values}.items():
+        prob.set_val(name, value)
+    return prob
+
+
+def test_each_node_is_heard_as_if_alone(meshes, small):
+    points = [
+        {"load_force": FORCE, "rpm": 6000.0, "speed": 8.0, "density": 1.2, "sound_speed": 340.0},
+        {"load_force": 2 * FORCE, "rpm": 5000.0, "speed": 0.0, "density": 1.0, "sound_speed": 320},
+    ]
+    both = at_nodes(
+        meshes, small, 2, **{n: np.array([point[n] for point in points]) for n in points[0]}
+    )
+    both.run_model()
+    for node, point in enumerate(points):
+        one = at_nodes(meshes, small, None, **point)
+        one.run_model()
+        for name in one.model.comp.get_io_metadata(iotypes="output"):
+            assert_allclose(both.get_val(name)[node], one.get_val(name), rtol=1e-12, err_msg=name)
+
+
+def test_partials_at_nodes(meshes, small, assert_directional):
+    prob = at_nodes(meshes, small, 2, rpm=[6000.0, 5000.0], speed=[8.0, 2.0])
+    prob.run_model()
+    scales = {
+        "surface_nodes": 1e-5,
+        "load_position": 1e-5,
+        "load_force": 1e-3,
+        "rpm": 1.0,
+        "speed": 0.1,
+        "density": 1e-2,
+        "sound_speed": 1.0,
+        "observer_position": 1e-2,
+    }
+    assert_directional(prob, scales, 1e-6, forward=True)
+
+
+@pytest.mark.parametrize("num_nodes", [None, 2])
+def test_standing_still_is_silence_with_finite_derivatives(meshes, small, num_nodes):
+    prob = at_nodes(meshes, small, num_nodes, rpm=0.0, speed=0.0, load_force=0.0)
+    prob.run_model()
+    assert_allclose(prob.get_val("oaspl_db"), -200.0)
+    assert_allclose(prob.get_val("mean_square_pressure"), 0.0)
+    inputs = list(prob.model.comp.get_io_metadata(iotypes="input"))
+    for total in prob.compute_totals(of=["oaspl_db", "oaspl_dba"], wrt=inputs).values():
+        assert np.isfinite(total).all()
+
+
 def test_supersonic_tip_is_a_failed_analysis(problem):
     problem.set_val("rpm", 24000.0)
     with pytest.raises(om.AnalysisError, match="relative tip Mach number must be below 1"):

@@ -1,0 +1,88 @@
+"""Components at several operating points: each point as if it were alone, and it costs alone."""
+
+import numpy as np
+import openmdao.api as om
+import pytest
+from numpy.testing import assert_allclose
+from openmdao.utils.assert_utils import assert_check_partials
+
+from propmdao.components import operating_points
+from propmdao.components.operating_points import STATIC, OperatingPointsComp
+
+
+def _lift(inputs, constants, static):
+    q = 0.5 * inputs["density"][0] * inputs["speed"][0] ** 2
+    return {"lift": (q * inputs["area"].sum())[None], "share": q * inputs["area"]}
+
+
+class Wing(OperatingPointsComp):
+    """Lift of surfaces that fly at several speeds, and a constant."""
+
+    def setup(self):
+        self.add_point_input("speed", val=10.0, units="m/s")
+        self.add_point_input("density", val=1.2, units="kg/m**3")
+        self.add_input("area", val=np.array([1.0, 2.0, 3.0]), units="m**2", tags=STATIC)
+        self.add_point_output("lift", units="N")
+        self.add_point_output("share", shape=(3,), units="N")
+        self.add_output("gravity", val=9.81)
+        self.function = _lift
+
+    def check(self, inputs, values):
+        if inputs["speed"][0] > 300.0:
+            raise om.AnalysisError("too fast")
+
+
+def problem(num_nodes, mode="auto"):
+    prob = om.Problem(reports=False)
+    prob.model.add_subsystem("comp", Wing(num_nodes=num_nodes), promotes=["*"])
+    prob.setup(mode=mode)
+    return prob
+
+
+@pytest.mark.parametrize(
+    ("num_nodes", "scalar", "array"), [(None, (1,), (3,)), (1, (1,), (1, 3)), (4, (4,), (4, 3))]
+)
+def test_nodes_lead_what_belongs_to_an_operating_point(num_nodes, scalar, array):
+    prob = problem(num_nodes)
+    prob.run_model()
+    assert prob.get_val("speed").shape == prob.get_val("lift").shape == scalar
+    assert prob.get_val("share").shape == array
+    assert prob.get_val("area").shape == (3,)
+    assert_allclose(prob.get_val("lift"), 360.0)
+    assert_allclose(prob.get_val("gravity"), 9.81)
+
+
+@pytest.mark.parametrize("num_nodes", [None, 1, 3])
+def test_partials(num_nodes):
+    prob = problem(num_nodes)
+    prob.set_val("speed", np.linspace(8.0, 12.0, num_nodes or 1))
+    prob.run_model()
+    data = prob.check_partials(out_stream=None, method="fd", form="central")
+    # quadratic, so that central differences have rounding only
+    assert_check_partials(data, atol=1e-6, rtol=1e-7)
+
+
+@pytest.mark.parametrize("mode", ["fwd", "rev"])
+def test_points_without_a_seed_are_not_differentiated(mode, monkeypatch):
+    prob = problem(5, mode)
+    prob.run_model()
+    calls = []
+    for name in ("forward", "reverse"):
+        product = getattr(operating_points, name)
+        monkeypatch.setattr(
+            operating_points, name, lambda *at, of=product: (calls.append(1), of(*at))[1]
+        )
+    totals = prob.compute_totals(of=["lift"], wrt=["speed"])["lift", "speed"]
+    assert_allclose(totals, np.diag(np.full(5, 72.0)))
+    assert len(calls) == 5
+
+
+def test_a_failure_names_its_node():
+    prob = problem(3)
+    prob.set_val("speed", [10.0, 400.0, 10.0])
+    with pytest.raises(om.AnalysisError, match="node 1: too fast"):
+        prob.run_model()
+    alone = problem(None)
+    alone.set_val("speed", 400.0)
+    with pytest.raises(om.AnalysisError, match=r"compute\(\), too fast"):
+        alone.run_model()
