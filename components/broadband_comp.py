@@ -13,7 +13,8 @@ from propmdao.acoustics.levels import energy_sum_db, level_db, level_dba
 from propmdao.aerodynamics.rings import vortex_rings
 from propmdao.aerodynamics.strips import blade_strips, strip_radii
 from propmdao.components.acoustics_comp import check_tip_speed
-from propmdao.components.jax_component import Arrays, JaxComponent
+from propmdao.components.jax_component import Arrays
+from propmdao.components.operating_points import STATIC, OperatingPointsComp
 from propmdao.fidelity import Fidelity
 from propmdao.geometry.blade import Blade, span_interpolation
 from propmdao.propeller import Propeller
@@ -22,11 +23,13 @@ from propmdao.self_noise import BANDS_HZ, self_noise, strip_flow
 _SILENCE_DB = -200.0
 
 
-class BroadbandComp(JaxComponent):
+class BroadbandComp(OperatingPointsComp):
     """Broadband self-noise by Brooks, Pope and Marcolini, at observers that fly along.
 
     Names without a word are those of the tones, `oaspl_db` and `oaspl_dba` of `AcousticsComp`;
-    here are "broadband", the noise alone, and "total", tones and noise together.
+    here are "broadband", the noise alone, and "total", tones and noise together. With `num_nodes`
+    everything but the blade, the observers and `band_frequency` has a leading axis of that many
+    operating points.
 
     Inputs
     ------
@@ -63,6 +66,8 @@ class BroadbandComp(JaxComponent):
 
     Options
     -------
+    num_nodes : int or None
+        Number of operating points; None is a single one, with the shapes above.
     propeller : Propeller
         Number of blades, stations, section shapes and initial thickness.
     observers : (n_observers, 3) array
@@ -73,10 +78,11 @@ class BroadbandComp(JaxComponent):
     Raises
     ------
     om.AnalysisError
-        When the blade tip is not slower than sound.
+        When the blade tip is not slower than sound, with the node where there are several.
     """
 
     def initialize(self) -> None:
+        super().initialize()
         self.options.declare("propeller", types=Propeller, desc="Blades, stations, sections.")
         self.options.declare("observers", types=np.ndarray, desc="Initial positions [m].")
         self.options.declare("fidelity", Fidelity(), types=Fidelity, desc="Numbers of panels.")
@@ -86,18 +92,20 @@ class BroadbandComp(JaxComponent):
         observers = self.options["observers"]
         nc, ns, n_observers = fidelity.n_chordwise, fidelity.n_spanwise, len(observers)
         blade = Blade.from_propeller(propeller)
-        self.add_input("lattice_nodes", shape=(nc + 1, ns + 1, 3), units="m")
-        self.add_input("section_speed", shape=ns, units="m/s")
-        self.add_input("section_lift_coefficient", shape=ns)
-        self.add_input("thickness_over_chord", val=np.asarray(blade.thickness_over_chord))
-        self.add_input("rpm", val=4000.0, units="rpm")
-        self.add_input("speed", val=0.0, units="m/s")
-        self.add_input("density", val=1.225, units="kg/m**3")
-        self.add_input("sound_speed", val=340.294, units="m/s")
-        self.add_input("observer_position", val=observers, units="m")
-        self.add_input("oaspl_db", val=np.full(n_observers, _SILENCE_DB), desc="Of the tones.")
-        self.add_input("oaspl_dba", val=np.full(n_observers, _SILENCE_DB), desc="Of the tones.")
-        self.add_output(
+        self.add_input("lattice_nodes", shape=(nc + 1, ns + 1, 3), units="m", tags=STATIC)
+        self.add_point_input("section_speed", shape=(ns,), units="m/s")
+        self.add_point_input("section_lift_coefficient", shape=(ns,))
+        self.add_input(
+            "thickness_over_chord", val=np.asarray(blade.thickness_over_chord), tags=STATIC
+        )
+        self.add_point_input("rpm", val=4000.0, units="rpm")
+        self.add_point_input("speed", val=0.0, units="m/s")
+        self.add_point_input("density", val=1.225, units="kg/m**3")
+        self.add_point_input("sound_speed", val=340.294, units="m/s")
+        self.add_input("observer_position", val=observers, units="m", tags=STATIC)
+        self.add_point_input("oaspl_db", _SILENCE_DB, shape=(n_observers,), desc="Of the tones.")
+        self.add_point_input("oaspl_dba", _SILENCE_DB, shape=(n_observers,), desc="Of the tones.")
+        self.add_point_output(
             "broadband_mean_square_pressure", shape=(n_observers, BANDS_HZ.size), units="Pa**2"
         )
         self.add_output("band_frequency", val=np.asarray(BANDS_HZ), units="Hz")
@@ -107,7 +115,7 @@ class BroadbandComp(JaxComponent):
             ("oaspl_total_db", "Overall level of tones and broadband noise."),
             ("oaspl_total_dba", "A-weighted level of tones and broadband noise."),
         ):
-            self.add_output(name, shape=n_observers, desc=desc)
+            self.add_point_output(name, shape=(n_observers,), desc=desc)
         stations = propeller.r_over_R
         radii = strip_radii(float(stations[0]), ns)
         self.function = _broadband
@@ -147,7 +155,6 @@ def _broadband(inputs: Arrays, constants: Any, static: int) -> Arrays:
     )
     return {
         "broadband_mean_square_pressure": heard.total,
-        "band_frequency": BANDS_HZ,
         "oaspl_broadband_db": broadband_db,
         "oaspl_broadband_dba": broadband_dba,
         "oaspl_total_db": _together(inputs["oaspl_db"], broadband_db),

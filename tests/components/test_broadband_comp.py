@@ -13,21 +13,54 @@ from propmdao.self_noise import BANDS_HZ
 OBSERVERS = arc(1.9, [-45.0, -20.0])
 
 
+POINTS = {
+    "section_speed": np.array([[14.0, 30.0, 47.0, 59.0], [17.0, 36.0, 56.0, 70.0]]),
+    "section_lift_coefficient": np.array([[0.9, 0.8, 0.7, 0.5], [1.0, 0.9, 0.8, 0.7]]),
+    "rpm": np.array([4200.0, 5000.0]),
+    "speed": np.array([8.0, 1.0]),
+    "density": np.array([1.225, 1.1]),
+    "sound_speed": np.array([340.294, 330.0]),
+    "oaspl_db": np.array([[50.0, 49.0], [54.0, 55.0]]),
+    "oaspl_dba": np.array([[35.0, 34.0], [39.0, 40.0]]),
+}
+SCALES = {
+    "lattice_nodes": 1e-5,
+    "section_speed": 0.1,
+    "section_lift_coefficient": 1e-3,
+    "thickness_over_chord": 1e-3,
+    "rpm": 5.0,
+    "speed": 0.1,
+    "density": 1e-2,
+    "sound_speed": 1.0,
+    "observer_position": 1e-2,
+    "oaspl_db": 0.1,
+    "oaspl_dba": 0.1,
+}
+
+
 @pytest.fixture
-def problem(meshes, propeller, small):
-    prob = om.Problem(reports=False)
-    prob.model.add_subsystem(
-        "comp",
-        BroadbandComp(propeller=propeller, observers=OBSERVERS, fidelity=small),
-        promotes=["*"],
-    )
-    prob.setup()
-    prob.set_val("lattice_nodes", meshes.get_val("lattice_nodes"))
-    prob.set_val("section_speed", [14.0, 30.0, 47.0, 59.0])
-    prob.set_val("section_lift_coefficient", [0.9, 0.8, 0.7, 0.5])
-    prob.set_val("rpm", 4200.0)
-    prob.set_val("speed", 8.0)
-    return prob
+def problem_at(meshes, propeller, small):
+    """Problem with a `BroadbandComp` of so many nodes and the given values."""
+
+    def problem_at(num_nodes, **values):
+        prob = om.Problem(reports=False)
+        comp = BroadbandComp(
+            propeller=propeller, observers=OBSERVERS, fidelity=small, num_nodes=num_nodes
+        )
+        prob.model.add_subsystem("comp", comp, promotes=["*"])
+        prob.setup()
+        prob.set_val("lattice_nodes", meshes.get_val("lattice_nodes"))
+        for name, value in values.items():
+            prob.set_val(name, value)
+        return prob
+
+    return problem_at
+
+
+@pytest.fixture
+def problem(problem_at):
+    names = ("section_speed", "section_lift_coefficient", "rpm", "speed")
+    return problem_at(None, **{name: POINTS[name][0] for name in names})
 
 
 def level(mean_square):
@@ -78,23 +111,28 @@ def test_broadband_partials(problem, assert_directional, forward):
     problem.set_val("oaspl_db", 50.0)
     problem.set_val("oaspl_dba", 35.0)
     problem.run_model()
-    scales = {
-        "lattice_nodes": 1e-5,
-        "section_speed": 0.1,
-        "section_lift_coefficient": 1e-3,
-        "thickness_over_chord": 1e-3,
-        "rpm": 5.0,
-        "speed": 0.1,
-        "density": 1e-2,
-        "sound_speed": 1.0,
-        "observer_position": 1e-2,
-        "oaspl_db": 0.1,
-        "oaspl_dba": 0.1,
-    }
-    assert_directional(problem, scales, 1e-6, forward)
+    assert_directional(problem, SCALES, 1e-6, forward)
 
 
 def test_supersonic_tip_is_a_failed_analysis(problem):
     problem.set_val("rpm", 24000.0)
     with pytest.raises(om.AnalysisError, match="relative tip Mach number must be below 1"):
         problem.run_model()
+
+
+def test_each_node_is_heard_as_if_alone(problem_at):
+    both = problem_at(2, **POINTS)
+    both.run_model()
+    outputs = set(both.model.comp.get_io_metadata(iotypes="output"))
+    assert both.get_val("band_frequency").shape == BANDS_HZ.shape
+    for node in range(2):
+        one = problem_at(None, **{name: values[node] for name, values in POINTS.items()})
+        one.run_model()
+        for name in outputs - {"band_frequency"}:
+            assert_allclose(both.get_val(name)[node], one.get_val(name), rtol=1e-12, err_msg=name)
+
+
+def test_partials_at_nodes(problem_at, assert_directional):
+    prob = problem_at(2, **POINTS)
+    prob.run_model()
+    assert_directional(prob, SCALES, 1e-6)
