@@ -50,9 +50,10 @@ def _kernel(p: Array, a: Array, b: Array, core4: Array) -> Array:
 def _kernel_derivative(
     primals: tuple[Array, Array, Array, Array], tangents: tuple[Array, Array, Array, Array]
 ) -> tuple[Array, Array]:
-    # K depends on the points by three scalar products alone. Its slopes in these are elementwise,
-    # and the change of the products by coordinates is a matrix product, forward and transposed: a
-    # gradient takes two thirds of the time that differentiating the arithmetic step by step takes.
+    # The scalar product of P - A and P - B is (|P - A|^2 + |P - B|^2 - |B - A|^2) / 2, so that K
+    # depends on the points by two squares alone. Its slopes are elementwise, kept by reverse mode
+    # and used by every product; the changes of the squares are matrix products, forward and
+    # transposed.
     p, a, b, core4 = primals
     dp, da, db, dcore4 = tangents
     aa, bb, d = _products(p, a, b)
@@ -61,28 +62,26 @@ def _kernel_derivative(
     cross2 = qq - d * d
     n, e = aa + bb + 2.0 * q, cross2 * cross2 + core4[:, None]
     inverse = 1.0 / (qq * n * e)
+    one_over_n, one_over_e, one_over_q = inverse * qq * e, inverse * qq * n, inverse * q * n * e
     root = n * jnp.sqrt(inverse) / _FOUR_PI  # sqrt(n / (qq e))
-    by_e = 0.5 * (q - d) * (inverse * qq * n)
-    by_n = 0.5 * (q - d) * (inverse * qq * e)
-    one_over_qq = inverse * n * e
-    by_aa = root * ((0.5 * q - 0.5 * (q - d) + by_n * (aa + q)) * (bb * one_over_qq)
-                    - by_e * 2.0 * cross2 * bb)  # fmt: skip
-    by_bb = root * ((0.5 * q - 0.5 * (q - d) + by_n * (bb + q)) * (aa * one_over_qq)
-                    - by_e * 2.0 * cross2 * aa)  # fmt: skip
-    by_d = root * (4.0 * by_e * cross2 * d - 1.0)
-    by_core4 = -root * by_e
+    k = (q - d) * root
+    by_core4 = -0.5 * k * one_over_e
+    by_d = -root - 4.0 * by_core4 * cross2 * d
+    by_q = root * d * one_over_q + k * (one_over_n - 2.0 * cross2 * q * one_over_e)
+    same, half = 0.5 * (k * one_over_n + by_d), 0.5 * by_q * one_over_q
+    by_aa, by_bb = half * bb + same, half * aa + same
 
-    # |P - A|^2 / 2 = (1, -A).(P.P / 2, P) + A.A / 2, likewise the others, so that the sums over
-    # points and over segments in the transpose are matrix products, not slow reductions.
+    # |P - A|^2 / 2 = (1, -A).(P.P / 2, P) + A.A / 2, so that the sums over points and over segments
+    # in the transpose are matrix products, not slow reductions.
     one, p1, dp1 = jnp.ones_like(p[:1]), _with(p, 1.0), _with(dp, (p * dp).sum(0))
 
-    def change(x: Array, dx: Array, constant: Array) -> Array:
-        return 2.0 * (_with(-x, 1.0).T @ dp1 + _with(-dx, constant).T @ p1)
+    def change(x: Array, dx: Array) -> Array:
+        return 2.0 * (_with(-x, 1.0).T @ dp1 + _with(-dx, (x * dx).sum(0)).T @ p1)
 
-    dk = by_aa * change(a, da, (a * da).sum(0)) + by_bb * change(b, db, (b * db).sum(0))
-    dk += by_d * change(0.5 * (a + b), 0.5 * (da + db), 0.5 * (a * db + da * b).sum(0))
-    dk += by_core4 * (dcore4[:, None] @ one)
-    return (q - d) * root, dk
+    length = ((b - a) * (db - da)).sum(0)[:, None]
+    dk = by_aa * change(a, da) + by_bb * change(b, db)
+    dk += by_core4 * (dcore4[:, None] @ one) - by_d * (length @ one)
+    return k, dk
 
 
 def _with(x: Array, row: Array | float) -> Array:
