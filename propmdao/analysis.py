@@ -11,8 +11,15 @@ import numpy as np
 import numpy.typing as npt
 from jax import Array
 
+from propmdao.acoustics.broadband.boundary_layer import Trip
 from propmdao.acoustics.formulation1a import require_subsonic_tip, tones
-from propmdao.acoustics.observers import arc, require_outside_rotor
+from propmdao.acoustics.observers import point, require_outside_rotor
+from propmdao.acoustics.surroundings import (
+    Surroundings,
+    bands_by_paths,
+    sound_paths,
+    tones_by_paths,
+)
 from propmdao.aerodynamics.coefficients import coefficients
 from propmdao.aerodynamics.polars import (
     SectionPolars,
@@ -31,7 +38,7 @@ from propmdao.geometry.blade import Blade, span_interpolation
 from propmdao.geometry.meshes import MeshRadii, blade_meshes, mesh_radii
 from propmdao.geometry.surface import Panels, surface_panels
 from propmdao.propeller import Propeller
-from propmdao.self_noise import self_noise, strip_flow
+from propmdao.self_noise import BANDS_HZ, self_noise, strip_flow
 
 SOUND_SPEED = 340.294
 
@@ -48,7 +55,9 @@ def analyze(
     stall_delay: bool = True,
     polars: SectionPolars | None = None,
     broadband: bool = False,
-    observers: Sequence[tuple[float, float]] = (),
+    trip: Trip = "none",
+    observers: Sequence[Sequence[float]] = (),
+    surroundings: Surroundings = Surroundings(),  # noqa: B008 - frozen
     fidelity: Fidelity = Fidelity(),  # noqa: B008 - frozen
 ) -> Analysis:
     """Analyse a propeller at a rotation speed, or at the one that gives a thrust.
@@ -74,9 +83,14 @@ def analyze(
         catalogue's.
     broadband : bool
         Add the broadband self-noise of the blades to the tones.
-    observers : sequence of (radius, elevation_deg)
-        Microphones flying along with the rotor, on an arc around its centre: distance [m] and
-        elevation from the rotor plane, negative on the wake's side [deg].
+    trip : {"none", "light", "heavy"}
+        How the boundary layers are tripped: of broadband noise, not of the loads.
+    observers : sequence of (radius, elevation_deg) or (radius, elevation_deg, azimuth_deg)
+        Microphones flying along with the rotor: distance from its centre [m], elevation from the
+        rotor plane, negative on the wake's side, and azimuth about its axis [deg], 0 where none is
+        given.
+    surroundings : Surroundings
+        Ground that reflects and air that absorbs.
     fidelity : Fidelity
         Numbers of panels and harmonics.
 
@@ -104,9 +118,11 @@ def analyze(
         polars = polars or polars_for(propeller)
         sections = viscous_sections(polars, blade, section_radii, SOUND_SPEED, float(stall_delay))
     radius = 0.5 * propeller.diameter
-    points = np.asarray(observers, float).reshape(-1, 2)
-    positions = arc(points[:, 0], points[:, 1])
+    points = np.array([(*place, 0.0)[:3] for place in observers], float).reshape(-1, 3)
+    positions = point(*points.T)
     require_outside_rotor(positions, radius)
+    paths = sound_paths(positions, surroundings)
+    ends = paths.reshape(-1, 3)
     air = float(speed), float(density)
     if thrust is not None:
         bounds = rotation_bounds(radius, speed)
@@ -122,6 +138,7 @@ def analyze(
         steady = solve_steady(nodes, propeller.n_blades, radius, omega, *air, sections)
     if sections is not None and polars is not None:
         _warn_outside_polars(polars, sections, blade, stations, steady, float(density))
+    mach = speed / SOUND_SPEED
     heard = tones(
         panels,
         steady.point_loads,
@@ -129,18 +146,21 @@ def analyze(
         omega,
         *air,
         SOUND_SPEED,
-        positions,
+        ends,
         fidelity.n_harmonics,
     )
+    heard = tones_by_paths(heard, paths, mach, surroundings)
     noise = None
     if broadband:
         states = steady.sections
         flow = strip_flow(
             steady.strips, states.relative_speed, states.lift_coefficient, blade, section_radii
         )
-        noise = self_noise(flow, propeller.n_blades, omega, *air, SOUND_SPEED, positions)
+        noise = self_noise(flow, propeller.n_blades, omega, *air, SOUND_SPEED, ends, trip)
+        way = BANDS_HZ, paths, mach, SOUND_SPEED, surroundings
+        noise = jax.tree.map(lambda power: bands_by_paths(power, *way), noise)
     of = coefficients(steady.thrust, steady.torque, omega, *air, propeller.diameter)
-    return Analysis(float(rpm), *air, viscous, steady, of, points, heard, noise)
+    return Analysis(float(rpm), *air, viscous, steady, of, points, heard, noise, trip, surroundings)
 
 
 @partial(jax.jit, static_argnames=("n_chordwise", "n_contour"))

@@ -12,6 +12,7 @@ from jax import Array
 
 from propmdao.acoustics.bands import tones_in_bands
 from propmdao.acoustics.broadband import SelfNoise, third_octave_centers
+from propmdao.acoustics.broadband.boundary_layer import Trip
 from propmdao.acoustics.formulation1a import Tones
 from propmdao.acoustics.levels import (
     level_db,
@@ -22,6 +23,7 @@ from propmdao.acoustics.levels import (
     spl_db,
     third_octave,
 )
+from propmdao.acoustics.surroundings import Surroundings
 from propmdao.aerodynamics.coefficients import Coefficients
 from propmdao.aerodynamics.solution import SteadySolution, failure
 from propmdao.self_noise import BANDS_HZ
@@ -45,12 +47,17 @@ class Analysis:
         Loads of the vortex lattice.
     coefficients : Coefficients
         J, CT, CQ, CP, eta.
-    observers : (n_observers, 2) array
-        Radius [m] and elevation [deg] of the observers.
+    observers : (n_observers, 3) array
+        Radius [m], elevation and azimuth [deg] of the observers; `observers.point` gives their
+        positions.
     tones : Tones
         Their complex pressure amplitudes.
     broadband : SelfNoise or None
         Mean squares in the third octaves `propmdao.self_noise.BANDS_HZ`, where asked for.
+    trip : str
+        How the boundary layers are tripped in the broadband noise.
+    surroundings : Surroundings
+        Ground and air on the way to the observers.
     """
 
     rpm: float
@@ -62,6 +69,8 @@ class Analysis:
     observers: npt.NDArray[np.float64]
     tones: Tones
     broadband: SelfNoise | None
+    trip: Trip
+    surroundings: Surroundings
 
     def to_dict(self) -> dict[str, Any]:
         """Results as plain numbers, with the keys of ``propmdao analyze --json``.
@@ -70,7 +79,8 @@ class Analysis:
         -------
         dict
             rpm, speed, rho, J, thrust, torque, shaft_power, CT, CQ, CP, eta, viscous, converged,
-            failure (None, or why it did not converge) and a list of observers with their levels.
+            failure (None, or why it did not converge), trip (None without broadband noise),
+            surroundings and a list of observers with their levels.
         """
         levels = jax.tree.map(np.asarray, _levels(self.tones))
         return {
@@ -88,6 +98,8 @@ class Analysis:
             "viscous": self.viscous,
             "converged": bool(self.steady.converged),
             "failure": failure(self.steady),
+            "trip": self.trip if self.broadband is not None else None,
+            "surroundings": dataclasses.asdict(self.surroundings),
             "observers": [self._observer(i, levels) for i in range(len(self.observers))],
         }
 
@@ -96,6 +108,7 @@ class Analysis:
         spectra = [name for name in levels if name.startswith("spl")]
         result = {
             "elevation_deg": float(self.observers[i, 1]),
+            "azimuth_deg": float(self.observers[i, 2]),
             "radius": float(self.observers[i, 0]),
             "spl_bpf_db": float(levels["spl_db"][i, 0]),
             **{name: float(levels[name][i]) for name in levels if name not in spectra},

@@ -5,14 +5,30 @@ from __future__ import annotations
 import argparse
 import sys
 import warnings
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from propmdao.command_options import (
+    add_operating_point,
+    add_propeller,
+    number,
+    take_negative_ranges,
+)
 from propmdao.json_output import print_json
+from propmdao.observer_options import (
+    add_observers,
+    add_surroundings,
+    add_trip,
+    observers_of,
+    require_broadband,
+    surroundings_of,
+)
+from propmdao.output_files import require_figures, require_writable, save_figures
 
 if TYPE_CHECKING:
     from propmdao.aerodynamics.polars import PolarTable
+    from propmdao.analysis import Analysis
 
 DESCRIPTION = """\
 Thrust, torque and noise of a propeller in hover (speed 0) or axial flight.
@@ -20,8 +36,10 @@ Thrust, torque and noise of a propeller in hover (speed 0) or axial flight.
 Steady vortex lattice held to the polars of the blade's sections, with a wake carried by the flow it
 induces, then tones by Farassat's Formulation 1A: thickness and loading noise of the full blade
 surface, heard by observers that fly along. With --broadband also the self-noise of the blades
-(Brooks, Pope and Marcolini). The polars that ship are of E63, Clark-Y, their blends and NACA
-4-digit sections; others are given with --polar, or made where NeuralFoil is installed.
+(Brooks, Pope and Marcolini). Ground may reflect the sound, and air absorb it.
+
+The polars that ship are of E63, Clark-Y, their blends and NACA 4-digit sections; others are given
+with --polar, or made where NeuralFoil is installed.
 """
 
 EXAMPLES = """\
@@ -29,6 +47,9 @@ examples:
   propmdao analyze apcsf_11x4.7 --rpm 4200 --speed 8
   propmdao analyze apcsf_11x4.7 --thrust 1.5 --speed 8 --arc 1.905 -45 --broadband
   propmdao analyze my_blade.toml --rpm 3000:5000:500 --arc 1.905 -45 0 45 --json
+  propmdao analyze apcsf_11x4.7 --rpm 4200 --arc 1.905 -45 --broadband --wav hover.wav
+  propmdao analyze apcsf_11x4.7 --rpm 4200 --ground 10 --grid 0:40:5 0 -10 --absorption
+  propmdao analyze apcsf_11x4.7 --rpm 4200 --speed 8 --level --hemisphere 20 10 --figures results
   propmdao analyze my_blade.toml --rpm 4200 --polar sg6042 sg6042_re50k.txt sg6042_re100k.txt
 
 CT = T/(rho n^2 D^4), CQ = Q/(rho n^2 D^5), CP = 2 pi CQ, J = V/(n D), eta = J CT/CP, n in rev/s.
@@ -36,22 +57,13 @@ Levels are in dB re 20 uPa, rms. SI units throughout. Exit status: 0, or 2 with 
 """
 
 
-def add_analyze(
-    commands: argparse._SubParsersAction[Any],
-    number: Callable[[str], float],
-    number_or_range: Callable[[str], float | list[float]],
-    arc: Callable[[list[float]], list[tuple[float, float]]],
-) -> None:
+def add_analyze(commands: argparse._SubParsersAction[Any]) -> None:
     """Add the command to a command line.
 
     Parameters
     ----------
     commands : argparse subparsers
         What it is added to.
-    number, number_or_range : callable
-        Read a number, or a number or range, from a text.
-    arc : callable
-        Observers of one ``--arc``.
     """
     command = commands.add_parser(
         "analyze",
@@ -61,51 +73,10 @@ def add_analyze(
         formatter_class=argparse.RawDescriptionHelpFormatter,
         allow_abbrev=False,
     )
-    command.set_defaults(command=_analyze, read_arc=arc)
-    command.add_argument(
-        "propeller",
-        metavar="PROPELLER",
-        help="name from 'propmdao list', or path of a propeller file (TOML)",
-    )
-    drive = command.add_mutually_exclusive_group(required=True)
-    drive.add_argument(
-        "--rpm",
-        action="append",
-        type=number_or_range,
-        metavar="N",
-        help="rotation speed [rev/min], or a range START:STOP:STEP that includes STOP; may be"
-        " repeated. Ranges and repetition give a list, of one result per value",
-    )
-    drive.add_argument(
-        "--thrust",
-        type=number,
-        metavar="N",
-        help="find the rotation speed that gives this thrust [N]",
-    )
-    command.add_argument(
-        "--speed",
-        type=number,
-        default=0.0,
-        metavar="M_S",
-        help="flight speed [m/s], default 0: hover",
-    )
-    command.add_argument(
-        "--rho",
-        type=number,
-        default=1.225,
-        metavar="KG_M3",
-        help="air density [kg/m3], default 1.225",
-    )
-    command.add_argument(
-        "--twist-offset",
-        type=number,
-        default=0.0,
-        metavar="DEG",
-        help="added to the blade angle everywhere [deg], default 0",
-    )
-    command.add_argument(
-        "--inviscid", action="store_true", help="without the polars of the sections: no drag"
-    )
+    take_negative_ranges(command)
+    command.set_defaults(command=_analyze)
+    add_propeller(command)
+    add_operating_point(command, several_rpm=True)
     command.add_argument(
         "--no-stall-delay",
         action="store_true",
@@ -122,25 +93,42 @@ def add_analyze(
         " number, or one C81 file (ending .c81); may be repeated for other airfoils",
     )
     command.add_argument(
-        "--arc",
-        action="append",
-        nargs="+",
-        type=number,
-        default=[],
-        metavar=("RADIUS", "ELEVATION"),
-        help="observers at RADIUS [m] from the hub and each ELEVATION [deg] from the rotor plane,"
-        " negative below it (wake side); may be repeated for other radii",
-    )
-    command.add_argument(
         "--broadband", action="store_true", help="add the broadband self-noise to the tones"
     )
+    add_trip(command)
     command.add_argument("--json", action="store_true", help="print JSON instead of tables")
+    add_observers(command)
+    add_surroundings(command)
+    group = command.add_argument_group("sound and figures", "Of one operating point.")
+    group.add_argument(
+        "--wav",
+        type=Path,
+        metavar="FILE.wav",
+        help="sound of the observers, a channel for each, to be repeated without a click",
+    )
+    group.add_argument(
+        "--seconds", type=number, default=5.0, metavar="S", help="its length [s], default 5"
+    )
+    group.add_argument(
+        "--full-scale",
+        type=number,
+        metavar="PA",
+        help="pressure of its largest number [Pa]: give two blades the same one to compare them by"
+        " ear; default the highest peak, rounded up",
+    )
+    group.add_argument(
+        "--figures",
+        type=Path,
+        metavar="FOLDER",
+        help="spectrum, third octaves and pressure at the first observer, directivity of an arc,"
+        " map of a hemisphere, as PNG",
+    )
 
 
 def _analyze(options: argparse.Namespace) -> None:
-    observers = [observer for values in options.arc for observer in options.read_arc(values)]
-    if options.inviscid and (options.polar or options.no_stall_delay):
-        raise ValueError("--inviscid has no sections: --polar and --no-stall-delay do not go along")
+    _check(options)
+    observers = observers_of(options)
+    surroundings = surroundings_of(options)
     # Slow to import, so only once the arguments are known to be good.
     from propmdao.aerodynamics.polars import polars_for
     from propmdao.analysis import analyze
@@ -158,7 +146,7 @@ def _analyze(options: argparse.Namespace) -> None:
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
         polars = None if options.inviscid else polars_for(propeller, own)
-        analyses = [
+        found = [
             analyze(
                 propeller,
                 rpm=rpm,
@@ -170,18 +158,59 @@ def _analyze(options: argparse.Namespace) -> None:
                 stall_delay=not options.no_stall_delay,
                 polars=polars,
                 broadband=options.broadband,
+                trip=options.trip,
                 observers=observers,
-            ).to_dict()
+                surroundings=surroundings,
+            )
             for rpm in _rpm_values(options.rpm)
         ]
     for message in dict.fromkeys(str(warning.message) for warning in caught):
         print(f"propmdao analyze: warning: {message}", file=sys.stderr)
+    analyses = [one.to_dict() for one in found]
+    analyses[0] |= _write(options, found[0], propeller.name)
     if options.json:
         print_json(analyses if _is_list(options.rpm) else analyses[0])
     else:
         from propmdao import report
 
-        report.print_analyses(propeller, options.twist_offset, analyses)
+        report.print_analyses(propeller, options.twist_offset, analyses, str(surroundings))
+
+
+def _check(options: argparse.Namespace) -> None:
+    """Refuse options that do not go together, before the work."""
+    if options.inviscid and (options.polar or options.no_stall_delay):
+        raise ValueError("--inviscid has no sections: --polar and --no-stall-delay do not go along")
+    require_broadband(options)
+    placed = [*options.arc, *options.point, *options.circle, *options.hemisphere, *options.grid]
+    for option, value in (("--wav", options.wav), ("--figures", options.figures)):
+        if value is None:
+            continue
+        if _is_list(options.rpm):
+            raise ValueError(f"{option} is of one operating point: give one --rpm")
+        if not placed:
+            raise ValueError(f"{option} needs observers, as with --arc 1.905 -45")
+    if options.full_scale is not None and options.wav is None:
+        raise ValueError("--full-scale is of a sound file: add --wav FILE.wav")
+    if options.wav is not None:
+        require_writable("--wav", options.wav, ".wav")
+    if options.figures is not None:
+        require_figures("--figures")
+
+
+def _write(options: argparse.Namespace, analysis: Analysis, name: str) -> dict[str, Any]:
+    """Write sound and figures; what was written."""
+    written: dict[str, Any] = {}
+    if options.wav is not None:
+        from propmdao.analysis_sound import write_sound
+
+        sound = write_sound(options.wav, analysis, options.seconds, options.full_scale)
+        written["sound"] = sound._asdict() | {"path": str(sound.path)}
+    if options.figures is not None:
+        from propmdao.analysis_figures import analysis_figures
+
+        figures = analysis_figures(analysis, name, options.hemisphere)
+        written["figures"] = save_figures(options.figures, figures)
+    return written
 
 
 def _own_polars(given: Sequence[Sequence[str]]) -> dict[str, PolarTable]:

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import argparse
 import contextlib
-import math
 import os
 import sys
 from collections.abc import Sequence
@@ -19,8 +18,6 @@ from propmdao.analyze_command import add_analyze
 from propmdao.json_output import print_json
 from propmdao.sweep_command import add_sweep
 from propmdao.wopwop_command import add_wopwop
-
-MAX_RPM_VALUES = 1000
 
 
 class _Parser(argparse.ArgumentParser):
@@ -88,8 +85,8 @@ def build_parser() -> argparse.ArgumentParser:
     listing.set_defaults(command=_list)
     listing.add_argument("--json", action="store_true", help="print JSON instead of a table")
 
-    add_analyze(commands, _number, _rpm, _arc)
-    add_sweep(commands, _number, _rpm, _arc)
+    add_analyze(commands)
+    add_sweep(commands)
     add_wopwop(commands)
     return parser
 
@@ -106,48 +103,6 @@ def _list(options: argparse.Namespace) -> None:
         from propmdao import report
 
         report.print_catalog(propellers)
-
-
-def _number(text: str) -> float:
-    try:
-        value = float(text)
-    except ValueError:
-        value = math.nan
-    if not math.isfinite(value):
-        raise argparse.ArgumentTypeError(f"{text!r} is not a number")
-    return value
-
-
-def _rpm(text: str) -> float | list[float]:
-    """Value of ``--rpm``: a number, or the numbers of a range."""
-    if ":" not in text:
-        return _number(text)
-    parts = text.split(":")
-    if len(parts) != 3:
-        raise argparse.ArgumentTypeError(f"{text!r} is not a range START:STOP:STEP")
-    start, stop, step = map(_number, parts)
-    if step <= 0.0 or stop < start:
-        raise argparse.ArgumentTypeError(
-            f"{text!r}: STEP of a range must be positive and STOP not below START"
-        )
-    # A step that fits the range up to rounding ends on STOP.
-    n_steps = math.floor((stop - start) / step * (1.0 + 1e-12))
-    if n_steps >= MAX_RPM_VALUES:
-        raise argparse.ArgumentTypeError(
-            f"{text!r} has {n_steps + 1} values, at most {MAX_RPM_VALUES} are allowed"
-        )
-    return [start + i * step for i in range(n_steps + 1)]
-
-
-def _arc(values: list[float]) -> list[tuple[float, float]]:
-    """Observers (radius, elevation) of one ``--arc``."""
-    if len(values) < 2:
-        raise ValueError(
-            f"--arc {values[0]:g} has no elevation: it needs a radius and at least one elevation,"
-            " as in --arc 1.905 -45 0"
-        )
-    radius, *elevations = values
-    return [(radius, elevation) for elevation in elevations]
 
 
 if __name__ == "__main__":

@@ -41,7 +41,10 @@ def print_catalog(propellers: Iterable[Propeller]) -> None:
 
 
 def print_analyses(
-    propeller: Propeller, twist_offset_deg: float, analyses: Sequence[dict[str, Any]]
+    propeller: Propeller,
+    twist_offset_deg: float,
+    analyses: Sequence[dict[str, Any]],
+    surroundings: str,
 ) -> None:
     """Print the operating points of one propeller and the levels at their observers.
 
@@ -53,6 +56,8 @@ def print_analyses(
         What was added to its blade angle [deg]; a calibrated blade is not the published one.
     analyses : sequence of dict
         Results with the keys of ``propmdao analyze --json``.
+    surroundings : str
+        Ground and air.
     """
     console = Console()
     first = analyses[0]
@@ -67,6 +72,10 @@ def print_analyses(
     heard = [observer for analysis in analyses for observer in analysis["observers"]]
     if heard:
         console.print(_levels(analyses))
+        trip = {None: "", "none": ", blades untripped"}.get(
+            first["trip"], f", blades tripped ({first['trip']})"
+        )
+        console.print(f"Levels: {surroundings}{trip}.", highlight=False)
     else:
         console.print("No observers: --arc RADIUS ELEVATION... adds their noise.\n")
     for analysis in analyses:
@@ -79,6 +88,26 @@ def print_analyses(
         console.print(INVISCID)
     if heard and "broadband" not in heard[0]:
         console.print(TONES_ONLY)
+    print_files(first)
+
+
+def print_files(result: dict[str, Any]) -> None:
+    """Print which files of sound and figures were written.
+
+    Parameters
+    ----------
+    result : dict
+        With "sound", of `propmdao.acoustics.sound.Recording`, and "figures", names of files; or
+        without.
+    """
+    if "sound" in result:
+        sound = result["sound"]
+        print(
+            f"Sound: {sound['path']}, {sound['duration']:.3f} s, full scale"
+            f" {sound['full_scale']:g} Pa, peak {sound['peak']:.4g} Pa"
+        )
+    if "figures" in result:
+        print("Figures:", *result["figures"])
 
 
 def _operating_points(analyses: Iterable[dict[str, Any]]) -> Table:
@@ -105,17 +134,20 @@ def _levels(analyses: Sequence[dict[str, Any]]) -> Table:
     table = _table()
     columns = {
         "radius": ("radius\nm", ".4g"),
-        "elevation_deg": ("elevation\ndeg", ".4g"),
+        "elevation_deg": ("elev.\ndeg", ".4g"),
+        "azimuth_deg": ("azim.\ndeg", ".4g"),
         "spl_bpf_db": ("BPF\ndB", ".1f"),
         "oaspl_db": ("OASPL\ndB", ".1f"),
-        "oaspl_thickness_db": ("thickness\ndB", ".1f"),
+        "oaspl_thickness_db": ("thick-\nness\ndB", ".1f"),
         "oaspl_loading_db": ("loading\ndB", ".1f"),
-        "oaspl_broadband_db": ("broadband\ndB", ".1f"),
+        "oaspl_broadband_db": ("broad-\nband\ndB", ".1f"),
         "oaspl_dba": ("total\ndBA", ".1f"),
     }
     heard = [observer for analysis in analyses for observer in analysis["observers"]]
     if "broadband" not in heard[0]:
         columns["oaspl_dba"] = ("tones\ndBA", ".1f")
+    if not any(observer["azimuth_deg"] for observer in heard):
+        del columns["azimuth_deg"]
     columns = {key: column for key, column in columns.items() if key in heard[0]}
     table.add_column("rpm", justify="right")
     for heading, _ in columns.values():
@@ -124,13 +156,18 @@ def _levels(analyses: Sequence[dict[str, Any]]) -> Table:
         for observer in analysis["observers"]:
             table.add_row(
                 f"{analysis['rpm']:.1f}",
-                *(_format(observer[key], form) for key, (_, form) in columns.items()),
+                *(_level(observer[key], form) for key, (_, form) in columns.items()),
             )
     return table
 
 
 def _table() -> Table:
     return Table(box=box.SIMPLE, pad_edge=False, collapse_padding=True)
+
+
+def _level(value: float, form: str) -> str:
+    # Silence is -200 dB.
+    return _format(value, form) if value > -199.0 else "-"
 
 
 def _format(value: float, form: str) -> str:

@@ -12,7 +12,7 @@ import zlib
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import ExitStack, closing
 from functools import partial
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from scipy.stats import qmc
 from tqdm import tqdm
@@ -20,6 +20,10 @@ from tqdm import tqdm
 from propmdao.propeller import Propeller
 from propmdao.result_table import ResultTable, table_files
 from propmdao.worker_processes import results_in_order, start_workers
+
+if TYPE_CHECKING:
+    from propmdao.acoustics.broadband.boundary_layer import Trip
+    from propmdao.acoustics.surroundings import Surroundings
 
 Point = dict[str, float]
 #: What a point may give, with the value where it does not; None is the propeller's own.
@@ -36,6 +40,7 @@ VARIABLES: dict[str, float | None] = {
 _RESULTS = "rpm J thrust torque shaft_power CT CQ CP eta converged".split()
 _WARNINGS = "warnings"
 _LEVELS = "spl_bpf_db oaspl_db oaspl_thickness_db oaspl_loading_db oaspl_dba".split()
+_BROADBAND = ("oaspl_broadband_db",)
 
 
 def grid(values: Mapping[str, Sequence[float]]) -> list[Point]:
@@ -126,8 +131,11 @@ def sweep(
     points: Iterable[Point],
     path: str | os.PathLike[str],
     *,
-    observers: Sequence[tuple[float, float]] = (),
+    observers: Sequence[Sequence[float]] = (),
     viscous: bool = True,
+    broadband: bool = False,
+    trip: Trip = "none",
+    surroundings: Surroundings | None = None,
     n_workers: int = 1,
 ) -> tuple[int, list[str]]:
     """Analyse a propeller at many points into a table.
@@ -148,10 +156,8 @@ def sweep(
         checksum ``blade`` of its description in front of what `propmdao.analysis` gives, levels
         as ``oaspl_db@1.905m-45deg``, and what it warns of. CSV, or with the ending ``.parquet`` a
         Parquet file that is written at the end beside the CSV file of the same name.
-    observers : sequence of (radius, elevation_deg)
-        As `propmdao.analysis.analyze` takes them.
-    viscous : bool
-        Hold the lattice to the polars of the sections; False for inviscid flow.
+    observers, viscous, broadband, trip, surroundings
+        As `propmdao.analysis.analyze` takes them; they are the same for all points.
     n_workers : int
         Processes that analyse; 1: only this one.
 
@@ -170,17 +176,21 @@ def sweep(
         When a worker dies; the rows so far are in the table.
     """
     csv_file, parquet_file = table_files(path)
-    complete = [{**_complete(propeller, point), "viscous": viscous} for point in points]
+    noise = {"broadband": broadband, "trip": trip, "surroundings": surroundings}
+    same = noise | {"viscous": viscous, "surroundings": str(surroundings or "free field")}
+    complete = [_complete(propeller, point) | same for point in points]
     drives = {"rpm" if "rpm" in point else "thrust_required" for point in complete}
     if len(drives) != 1:
         raise ValueError("a sweep needs points, and in all of them rpm or in all thrust_required")
     point_columns = list(complete[0])
     heard = [_suffix(*observer) for observer in observers]
+    of_noise = [*_LEVELS, *_BROADBAND] if broadband else _LEVELS
     results = [name for name in _RESULTS if name not in point_columns]
-    results += [name + suffix for suffix in heard for name in _LEVELS] + [_WARNINGS]
+    results += [name + suffix for suffix in heard for name in of_noise] + [_WARNINGS]
     table = ResultTable(csv_file, point_columns, results)
     new = [complete[place] for place in table.missing(complete)]
-    analysed = partial(_analysed, propeller, list(observers))
+    how = {name: value for name, value in noise.items() if value is not None}
+    analysed = partial(_analysed, propeller, how | {"observers": list(observers)})
     with ExitStack() as stack:
         rows: Iterator[tuple[dict[str, Any], str]] = map(analysed, new)
         if n_workers > 1:
@@ -221,7 +231,7 @@ def _checksum(propeller: Propeller) -> str:
 
 
 def _analysed(
-    propeller: Propeller, observers: list[tuple[float, float]], point: Mapping[str, Any]
+    propeller: Propeller, how: Mapping[str, Any], point: Mapping[str, Any]
 ) -> tuple[dict[str, Any], str]:
     """Results by column at a point, or none and the reason."""
     from propmdao.analysis import analyze  # slow to import
@@ -243,22 +253,25 @@ def _analysed(
                 density=point["rho"],
                 twist_offset_deg=point["twist_offset_deg"],
                 viscous=point["viscous"],
-                observers=observers,
+                **how,
             ).to_dict()
     except ValueError as error:
         return {}, str(error)
     except Exception as error:  # a survey of thousands of points does not end at one of them
         return {}, f"{type(error).__name__}: {error}"
+    suffixes = [_suffix(*observer) for observer in how["observers"]]
     levels = {
-        name + _suffix(heard["radius"], heard["elevation_deg"]): heard[name]
-        for heard in results.pop("observers")
-        for name in _LEVELS
+        name + suffix: heard[name]
+        for heard, suffix in zip(results.pop("observers"), suffixes, strict=True)
+        for name in (*_LEVELS, *_BROADBAND)
+        if name in heard
     }
     results[_WARNINGS] = "; ".join(" ".join(str(warning.message).split()) for warning in caught)
     unconverged = "" if results["converged"] else "the solution has not converged"
     return results | levels, results.get("failure") or unconverged
 
 
-def _suffix(radius: float, elevation_deg: float) -> str:
+def _suffix(radius: float, elevation_deg: float, azimuth_deg: float = 0.0) -> str:
     """What tells the columns of one observer from those of another."""
-    return f"@{radius:g}m{elevation_deg:+g}deg"
+    azimuth = f",az{azimuth_deg:+g}deg" if azimuth_deg else ""
+    return f"@{radius:g}m{elevation_deg:+g}deg{azimuth}"

@@ -3,9 +3,24 @@
 from __future__ import annotations
 
 import argparse
-import re
 from collections.abc import Callable, Sequence
 from typing import Any
+
+from propmdao.command_options import (
+    OPERATING_POINT,
+    add_propeller,
+    number,
+    number_or_range,
+    take_negative_ranges,
+)
+from propmdao.observer_options import (
+    add_observers,
+    add_surroundings,
+    add_trip,
+    observers_of,
+    require_broadband,
+    surroundings_of,
+)
 
 SWEEP_DESCRIPTION = """\
 A propeller at many points into a table, a row per point: a map of thrust, torque and noise over
@@ -33,11 +48,11 @@ when every point has failed.
 
 #: Option, variable of a point, unit or placeholder, help.
 OPTIONS = (
-    ("--rpm", "rpm", "N", "rotation speed [rev/min]"),
-    ("--thrust", "thrust_required", "N", "find the rotation speed that gives this thrust [N]"),
-    ("--speed", "speed", "M_S", "flight speed [m/s], default 0: hover"),
-    ("--rho", "rho", "KG_M3", "air density [kg/m3], default 1.225"),
-    ("--twist-offset", "twist_offset_deg", "DEG", "added to the blade angle everywhere [deg]"),
+    ("--rpm", "rpm", *OPERATING_POINT["--rpm"]),
+    ("--thrust", "thrust_required", *OPERATING_POINT["--thrust"]),
+    ("--speed", "speed", *OPERATING_POINT["--speed"]),
+    ("--rho", "rho", *OPERATING_POINT["--rho"]),
+    ("--twist-offset", "twist_offset_deg", *OPERATING_POINT["--twist-offset"]),
     ("--chord-factor", "chord_factor", "F", "times the chord everywhere, default 1"),
     ("--diameter", "diameter", "M", "stretches the whole blade [m]; default the propeller's"),
     ("--blades", "n_blades", "B", "number of blades; default the propeller's"),
@@ -45,22 +60,13 @@ OPTIONS = (
 MAX_POINTS = 100_000
 
 
-def add_sweep(
-    commands: argparse._SubParsersAction[Any],
-    number: Callable[[str], float],
-    number_or_range: Callable[[str], float | list[float]],
-    arc: Callable[[list[float]], list[tuple[float, float]]],
-) -> None:
+def add_sweep(commands: argparse._SubParsersAction[Any]) -> None:
     """Add the command to a command line.
 
     Parameters
     ----------
     commands : argparse subparsers
         What it is added to.
-    number, number_or_range : callable
-        Values of arguments: a number, or START:STOP:STEP as the list of its numbers.
-    arc : callable
-        Observers (radius, elevation) of the numbers of one ``--arc``.
     """
     command = commands.add_parser(
         "sweep",
@@ -70,14 +76,9 @@ def add_sweep(
         formatter_class=argparse.RawDescriptionHelpFormatter,
         allow_abbrev=False,
     )
-    # argparse takes -2 for a value and -2:4:0.5 for an option that it does not know.
-    command._negative_number_matcher = re.compile(r"-\.?\d")
-    command.set_defaults(command=_sweep, parsers=(number, number_or_range, arc))
-    command.add_argument(
-        "propeller",
-        metavar="PROPELLER",
-        help="name from 'propmdao list', or path of a propeller file (TOML)",
-    )
+    take_negative_ranges(command)
+    command.set_defaults(command=_sweep)
+    add_propeller(command)
     for option, variable, unit, text in OPTIONS:
         command.add_argument(option, dest=variable, metavar=unit, action="append", help=text)
     command.add_argument(
@@ -90,18 +91,12 @@ def add_sweep(
         "--seed", type=int, default=1, help="of the drawn points, default 1; same seed, same points"
     )
     command.add_argument(
-        "--arc",
-        action="append",
-        nargs="+",
-        type=number,
-        default=[],
-        metavar=("RADIUS", "ELEVATION"),
-        help="observers at RADIUS [m] from the hub and each ELEVATION [deg] from the rotor plane,"
-        " negative below it (wake side); may be repeated for other radii",
-    )
-    command.add_argument(
         "--inviscid", action="store_true", help="without the polars of the sections"
     )
+    command.add_argument(
+        "--broadband", action="store_true", help="add the broadband self-noise to the tones"
+    )
+    add_trip(command)
     command.add_argument(
         "--workers", type=int, default=1, metavar="N", help="processes that analyse, default 1"
     )
@@ -111,11 +106,14 @@ def add_sweep(
         metavar="FILE",
         help="table: .csv, or .parquet, which is written at the end beside the .csv of that name",
     )
+    add_observers(command)
+    add_surroundings(command)
 
 
 def _sweep(options: argparse.Namespace) -> None:
-    _, _, arc = options.parsers
-    observers = [observer for values in options.arc for observer in arc(values)]
+    observers = observers_of(options)
+    surroundings = surroundings_of(options)
+    require_broadband(options)
     if options.workers < 1:
         raise ValueError(f"--workers must be 1 or more; it is {options.workers}")
     # Slow to import, so only once the arguments are known to be good.
@@ -132,6 +130,9 @@ def _sweep(options: argparse.Namespace) -> None:
             options.out,
             observers=observers,
             viscous=not options.inviscid,
+            broadband=options.broadband,
+            trip=options.trip,
+            surroundings=surroundings,
             n_workers=options.workers,
         )
     except WorkerLostError as error:
@@ -154,7 +155,7 @@ def _points(options: argparse.Namespace) -> list[dict[str, float]]:
         if options.samples < 1:
             raise ValueError(f"--samples must be 1 or more; it is {options.samples}")
         ranges = {
-            variable: _low_high(variable, given.pop(variable), options.parsers[0])
+            variable: _low_high(variable, given.pop(variable), number)
             for variable, texts in list(given.items())
             if any(":" in text for text in texts)
         }
@@ -165,7 +166,7 @@ def _points(options: argparse.Namespace) -> list[dict[str, float]]:
     for variable in given:
         if any(variable in point for point in listed):
             raise ValueError(f"{variable} is given as an option and in '{options.points}'")
-    values = {name: _values(name, texts, options.parsers[1]) for name, texts in given.items()}
+    values = {name: _values(name, texts, number_or_range) for name, texts in given.items()}
     n_points = len(drawn) * len(listed)
     for numbers in values.values():
         n_points *= len(numbers)

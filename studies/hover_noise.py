@@ -20,7 +20,7 @@ from rich.table import Table
 from propmdao import measurement_plots
 from propmdao.acoustics.formulation1a import tones
 from propmdao.acoustics.levels import spl_db
-from propmdao.acoustics.observers import arc
+from propmdao.acoustics.observers import point
 from propmdao.analysis import SOUND_SPEED, Analysis, analyze
 from propmdao.fidelity import Fidelity
 from propmdao.geometry.blade import Blade
@@ -105,7 +105,7 @@ def scaled_tone(found: Analysis, thrust: float, torque: float) -> np.ndarray:
     loads = PointLoads(found.steady.point_loads.position, force)
     heard = tones(
         surface_panels(surface), loads, PROPELLER.n_blades, found.rpm * np.pi / 30.0, 0.0, DENSITY,
-        SOUND_SPEED, arc(*found.observers.T), 1,
+        SOUND_SPEED, point(*found.observers.T), 1,
     )  # fmt: skip
     return np.asarray(spl_db(heard.total[:, 0]))
 

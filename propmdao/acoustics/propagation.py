@@ -70,7 +70,7 @@ def absorb(mean_square: ArrayLike, frequency_hz: ArrayLike, distance: ArrayLike,
     ----------
     mean_square : (..., n) array
         Mean-square pressures [Pa^2] without absorption.
-    frequency_hz : (n,) array
+    frequency_hz : (n,) or (..., n) array
         Their frequencies, mid-band ones of third octaves, as fixed observers hear them [Hz].
     distance : (...,) array
         Way of the sound from emission to reception [m].
@@ -91,18 +91,43 @@ def absorb(mean_square: ArrayLike, frequency_hz: ArrayLike, distance: ArrayLike,
     return jnp.asarray(mean_square) * 10 ** (-0.1 * absorption_db_per_m(frequency_hz, air) * way)
 
 
-def absorb_tones(tones: Tones, distance: ArrayLike, air: Air) -> Tones:
+def way_flying_along(positions: ArrayLike, mach: Scalar) -> tuple[Array, Array]:
+    """Way of the sound to observers that fly along with its source, along +z.
+
+    Parameters
+    ----------
+    positions : (..., 3) array
+        From the source, at the same time [m].
+    mach : float
+        Of the flight, below 1.
+
+    Returns
+    -------
+    distance : (...,) array
+        From the source at emission to the observer at reception [m].
+    doppler : (...,) array
+        Frequency in the air at rest over that which the observers hear, who move like the source.
+    """
+    x = jnp.asarray(positions, float)
+    # While the sound travels the observer flies on: d is the root of d = |x + M d e_z|.
+    ahead, beta2 = mach * x[..., 2], 1 - mach**2
+    d = (ahead + jnp.sqrt(ahead**2 + beta2 * jnp.sum(x**2, axis=-1))) / beta2
+    return d, 1 / (1 - mach * (x[..., 2] / d + mach))
+
+
+def absorb_tones(tones: Tones, distance: ArrayLike, air: Air, doppler: ArrayLike = 1.0) -> Tones:
     """Tones after their way through the air.
 
     Parameters
     ----------
     tones : Tones
-        At (n_observers,) without absorption; in flight, for observers that fly along, the air
-        hears another frequency than they do, by Doppler's factor, which is left out here.
+        At (n_observers,) without absorption.
     distance : (n_observers,) array
         Way of the sound from emission to reception [m].
     air : Air
         Its state.
+    doppler : float or (n_observers,) array
+        Frequency in the air over that which the observers hear, see `way_flying_along`.
 
     Returns
     -------
@@ -110,7 +135,8 @@ def absorb_tones(tones: Tones, distance: ArrayLike, air: Air) -> Tones:
         Attenuated; the phase is not changed, for the dispersion of air is below 0.1 m/s.
     """
     way = jnp.asarray(distance, float)[..., None]
-    factor = 10 ** (-0.05 * absorption_db_per_m(tones.frequency_hz, air) * way)
+    frequency_hz = tones.frequency_hz * jnp.asarray(doppler, float)[..., None]
+    factor = 10 ** (-0.05 * absorption_db_per_m(frequency_hz, air) * way)
     return Tones(tones.frequency_hz, tones.thickness * factor, tones.loading * factor)
 
 

@@ -1,4 +1,4 @@
-"""The command line: what it accepts, prints and refuses; mostly with no physics behind it."""
+"""``propmdao analyze``: what it accepts, prints and refuses; mostly with no physics behind it."""
 
 from __future__ import annotations
 
@@ -7,57 +7,16 @@ import math
 import os
 import subprocess
 import sys
-import types
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 import pytest
 
-import propmdao
-from propmdao.catalog import catalog_names
+from propmdao.acoustics.surroundings import Surroundings
 from propmdao.cli import main
 
 PROPELLER = "apcsf_11x4.7"
-
-
-class Recorder:
-    """In place of `propmdao.analysis.analyze`: keeps what it was asked, answers at once."""
-
-    def __init__(self) -> None:
-        self.calls: list[dict[str, Any]] = []
-
-    def analyze(self, propeller: object, **asked: Any) -> Recorder:
-        self.calls.append(asked)
-        return self
-
-    def to_dict(self) -> dict[str, Any]:
-        asked = self.calls[-1]
-        point = dict.fromkeys(["J", "torque", "shaft_power", "CT", "CQ", "CP"], 0.5)
-        levels = dict.fromkeys(["spl_bpf_db", "oaspl_db", "oaspl_loading_db", "oaspl_dba"], 50.0)
-        return {
-            "rpm": 4000.0 if asked["rpm"] is None else asked["rpm"],
-            "speed": asked["speed"],
-            "rho": asked["density"],
-            **point,
-            "thrust": 1.5,
-            "eta": math.nan,
-            "viscous": asked["viscous"],
-            "converged": True,
-            "failure": None,
-            "observers": [
-                {"elevation_deg": elevation, "radius": radius, **levels}
-                | {"oaspl_thickness_db": -math.inf, "harmonics": [], "third_octave": []}
-                for radius, elevation in asked["observers"]
-            ],
-        }
-
-
-@pytest.fixture
-def recorder(monkeypatch: pytest.MonkeyPatch) -> Recorder:
-    recorder = Recorder()
-    module = types.SimpleNamespace(analyze=recorder.analyze)
-    monkeypatch.setitem(sys.modules, "propmdao.analysis", module)
-    return recorder
 
 
 def run(*arguments: str, **environment: str) -> subprocess.CompletedProcess[str]:
@@ -72,40 +31,12 @@ def run(*arguments: str, **environment: str) -> subprocess.CompletedProcess[str]
     )
 
 
-def refused(capsys: pytest.CaptureFixture[str], *arguments: str) -> str:
-    """The one line on stderr with which the command line refuses the arguments."""
-    try:
-        status = main(arguments)
-    except SystemExit as exit_:
-        status = exit_.code
-    output = capsys.readouterr()
-    assert status == 2
-    assert output.out == ""
-    assert output.err.startswith("propmdao")
-    assert output.err.count("\n") == 1 and output.err.endswith("\n")
-    return output.err
-
-
-def test_list_names_the_whole_catalogue(capsys: pytest.CaptureFixture[str]) -> None:
-    assert main(["list"]) == 0
-    table = capsys.readouterr().out
-    assert catalog_names()
-    assert all(name in table for name in catalog_names())
-
-
-def test_list_as_json_says_where_the_numbers_come_from(capsys: pytest.CaptureFixture[str]) -> None:
-    assert main(["list", "--json"]) == 0
-    propellers = json.loads(capsys.readouterr().out)
-    assert [propeller["name"] for propeller in propellers] == catalog_names()
-    assert all(propeller["source"] and propeller["diameter"] > 0 for propeller in propellers)
-
-
 def test_analyze_passes_on_what_was_asked(
-    recorder: Recorder, capsys: pytest.CaptureFixture[str]
+    recorder: Any, capsys: pytest.CaptureFixture[str]
 ) -> None:
     status = main(
         f"analyze {PROPELLER} --thrust 1.2 --speed 8 --rho 1.1 --twist-offset -1.5"
-        " --arc 1.905 -45 -.5 45 --arc 3 0 --broadband --json".split()
+        " --arc 1.905 -45 -.5 45 --arc 3 0 --broadband --trip heavy --ground 9 --json".split()
     )
     assert status == 0
     polars = [call.pop("polars") for call in recorder.calls]
@@ -120,12 +51,19 @@ def test_analyze_passes_on_what_was_asked(
             "viscous": True,
             "stall_delay": True,
             "broadband": True,
-            "observers": [(1.905, -45.0), (1.905, -0.5), (1.905, 45.0), (3.0, 0.0)],
+            "trip": "heavy",
+            "observers": [
+                (1.905, -45.0, 0.0),
+                (1.905, -0.5, 0.0),
+                (1.905, 45.0, 0.0),
+                (3.0, 0.0, 0.0),
+            ],
+            "surroundings": Surroundings(ground=9.0),
         }
     ]
 
 
-def test_defaults_are_hover_in_standard_air_without_observers(recorder: Recorder) -> None:
+def test_defaults_are_hover_in_standard_air_without_observers(recorder: Any) -> None:
     assert main(["analyze", PROPELLER, "--rpm", "4000"]) == 0
     (asked,) = recorder.calls
     assert asked.pop("polars") is not None
@@ -138,11 +76,13 @@ def test_defaults_are_hover_in_standard_air_without_observers(recorder: Recorder
         "viscous": True,
         "stall_delay": True,
         "broadband": False,
+        "trip": "none",
         "observers": [],
+        "surroundings": Surroundings(),
     }
 
 
-def test_sections_can_be_left_out_or_stall_as_in_two_dimensions(recorder: Recorder) -> None:
+def test_sections_can_be_left_out_or_stall_as_in_two_dimensions(recorder: Any) -> None:
     assert main(["analyze", PROPELLER, "--rpm", "4000", "--inviscid"]) == 0
     assert main(["analyze", PROPELLER, "--rpm", "4000", "--no-stall-delay"]) == 0
     inviscid, no_delay = recorder.calls
@@ -150,7 +90,7 @@ def test_sections_can_be_left_out_or_stall_as_in_two_dimensions(recorder: Record
     assert no_delay["viscous"] is True and no_delay["stall_delay"] is False
 
 
-def test_polars_of_ones_own_go_before_the_catalogue(recorder: Recorder, tmp_path: Path) -> None:
+def test_polars_of_ones_own_go_before_the_catalogue(recorder: Any, tmp_path: Path) -> None:
     lines = [" Mach = 0.000  Re = 0.100 e 6  Ncrit = 9.000", " alpha CL CD CDp CM", " --- --- ---"]
     lines += [f"{a} {0.1 * a + 0.3:.3f} 0.0200 0.0100 -0.0500" for a in range(-10, 13)]
     file = tmp_path / "mine.txt"
@@ -173,7 +113,7 @@ def test_polars_of_ones_own_go_before_the_catalogue(recorder: Recorder, tmp_path
     ],
 )
 def test_several_rpm_give_a_list_and_a_range_includes_its_stop(
-    recorder: Recorder, capsys: pytest.CaptureFixture[str], given: list[str], rpm: list[float]
+    recorder: Any, capsys: pytest.CaptureFixture[str], given: list[str], rpm: list[float]
 ) -> None:
     assert main(["analyze", PROPELLER, "--rpm", *given, "--json"]) == 0
     results = json.loads(capsys.readouterr().out)
@@ -181,7 +121,7 @@ def test_several_rpm_give_a_list_and_a_range_includes_its_stop(
 
 
 def test_one_rpm_gives_an_object_of_strict_json(
-    recorder: Recorder, capsys: pytest.CaptureFixture[str]
+    recorder: Any, capsys: pytest.CaptureFixture[str]
 ) -> None:
     def forbidden(constant: str) -> None:
         raise AssertionError(f"{constant} is no JSON")
@@ -194,7 +134,7 @@ def test_one_rpm_gives_an_object_of_strict_json(
 
 
 def test_tables_say_what_is_left_out_and_fit_eighty_columns(
-    recorder: Recorder, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+    recorder: Any, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setenv("COLUMNS", "80")
     assert main(["analyze", PROPELLER, "--rpm", "12345", "--arc", "1.905", "-45"]) == 0
@@ -208,7 +148,7 @@ def test_tables_say_what_is_left_out_and_fit_eighty_columns(
 
 
 def test_a_twist_offset_is_said_above_the_table(
-    recorder: Recorder, capsys: pytest.CaptureFixture[str]
+    recorder: Any, capsys: pytest.CaptureFixture[str]
 ) -> None:
     assert main(["analyze", PROPELLER, "--rpm", "4000", "--twist-offset", "-1.5"]) == 0
     assert "Twist offset -1.5 deg" in capsys.readouterr().out
@@ -231,6 +171,13 @@ def test_a_twist_offset_is_said_above_the_table(
         (f"analyze {PROPELLER} --rpm 4000 --arc", "--arc"),
         (f"analyze {PROPELLER} --rpm 4000 --arc 1.905", "at least one elevation"),
         (f"analyze {PROPELLER} --rpm 4000 --ar 1.905 0", "unrecognized arguments"),
+        (f"analyze {PROPELLER} --rpm 4000 --trip light", "--trip light is about broadband"),
+        (f"analyze {PROPELLER} --rpm 4000 --wav a.wav", "--wav needs observers"),
+        (f"analyze {PROPELLER} --rpm 4000 --figures a", "--figures needs observers"),
+        (f"analyze {PROPELLER} --rpm 1:2:1 --arc 1 0 --wav a.wav", "of one operating point"),
+        (f"analyze {PROPELLER} --rpm 4000 --arc 1 0 --wav a.mp3", "a.mp3: the file must end in"),
+        (f"analyze {PROPELLER} --rpm 4000 --arc 1 0 --wav no/a.wav", "there is no folder no"),
+        (f"analyze {PROPELLER} --rpm 4000 --full-scale 1", "--full-scale is of a sound file"),
         (f"analyze {PROPELLER} --rpm 4000 --polar e63", "--polar e63 has no file"),
         (f"analyze {PROPELLER} --rpm 4000 --polar e63 no_such.txt", "no_such.txt"),
         (f"analyze {PROPELLER} --rpm 4000 --polar e63 a.c81 b.c81", "a C81 file stands alone"),
@@ -240,18 +187,18 @@ def test_a_twist_offset_is_said_above_the_table(
     ],
 )
 def test_bad_input_is_refused_in_one_line(
-    recorder: Recorder, capsys: pytest.CaptureFixture[str], arguments: str, message: str
+    recorder: Any, refused: Callable[..., str], arguments: str, message: str
 ) -> None:
-    assert message in refused(capsys, *arguments.split())
+    assert message in refused(*arguments.split())
     assert recorder.calls == []
 
 
 def test_malformed_toml_is_refused_in_one_line(
-    recorder: Recorder, capsys: pytest.CaptureFixture[str], tmp_path: Path
+    recorder: Any, refused: Callable[..., str], tmp_path: Path
 ) -> None:
     file = tmp_path / "blade.toml"
     file.write_text('name = "blade"\ndiameter = = 0.3\n')
-    assert "line 2" in refused(capsys, "analyze", str(file), "--rpm", "4000")
+    assert "line 2" in refused("analyze", str(file), "--rpm", "4000")
 
 
 def test_keys_are_those_promised() -> None:
@@ -261,14 +208,14 @@ def test_keys_are_those_promised() -> None:
     assert (result.returncode, result.stderr) == (0, "")
     point = json.loads(result.stdout)
     assert list(point) == (
-        "rpm speed rho J thrust torque shaft_power CT CQ CP eta viscous converged failure observers"
-        "".split()
+        "rpm speed rho J thrust torque shaft_power CT CQ CP eta viscous converged failure trip"
+        " surroundings observers".split()
     )
     assert [observer["elevation_deg"] for observer in point["observers"]] == [-45, 0]
     for observer in point["observers"]:
         assert set(observer) == set(
-            "elevation_deg radius spl_bpf_db oaspl_db oaspl_thickness_db oaspl_loading_db oaspl_dba"
-            " harmonics third_octave".split()
+            "elevation_deg azimuth_deg radius spl_bpf_db oaspl_db oaspl_thickness_db"
+            " oaspl_loading_db oaspl_dba harmonics third_octave".split()
         )
         assert set(observer["harmonics"][0]) == set(
             "m frequency_hz spl_db spl_thickness_db spl_loading_db".split()
@@ -306,44 +253,9 @@ def test_rpm_0_gives_zero_loads(capsys: pytest.CaptureFixture[str]) -> None:
     ],
 )
 def test_what_the_physics_refuses_is_one_line(
-    capsys: pytest.CaptureFixture[str], arguments: str, message: str
+    refused: Callable[..., str], arguments: str, message: str
 ) -> None:
-    assert message in refused(capsys, "analyze", PROPELLER, *arguments.split())
-
-
-def test_interrupt_ends_quietly(
-    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
-) -> None:
-    def interrupted(*_: object, **__: object) -> None:
-        raise KeyboardInterrupt
-
-    module = types.SimpleNamespace(analyze=interrupted)
-    monkeypatch.setitem(sys.modules, "propmdao.analysis", module)
-    assert main(["analyze", PROPELLER, "--rpm", "4000"]) == 130
-    output = capsys.readouterr()
-    assert output.out == output.err == ""
-
-
-@pytest.mark.parametrize("form", [[], ["--json"]])
-def test_a_closed_pipe_ends_quietly(form: list[str]) -> None:
-    reader, writer = os.pipe()
-    os.close(reader)
-    with os.fdopen(writer, "w") as pipe:
-        result = subprocess.run(
-            [sys.executable, "-m", "propmdao.cli", "list", *form],
-            stdout=pipe,
-            stderr=subprocess.PIPE,
-            text=True,
-            check=False,
-        )
-    assert result.stderr == ""
-    assert result.returncode == 1
-
-
-def test_version_is_that_of_the_package() -> None:
-    version = run("--version")
-    assert (version.returncode, version.stderr) == (0, "")
-    assert version.stdout == f"propmdao {propmdao.__version__}\n"
+    assert message in refused("analyze", PROPELLER, *arguments.split())
 
 
 def test_help_explains_every_option(capsys: pytest.CaptureFixture[str]) -> None:
@@ -352,6 +264,8 @@ def test_help_explains_every_option(capsys: pytest.CaptureFixture[str]) -> None:
     assert exit_.value.code == 0
     text = capsys.readouterr().out
     options = "--rpm --thrust --speed --rho --twist-offset --inviscid --no-stall-delay --polar"
-    for option in f"{options} --arc --broadband --json".split():
+    options += " --arc --point --circle --hemisphere --grid --ground --level --absorption"
+    options += " --broadband --trip --wav --seconds --full-scale --figures --json"
+    for option in options.split():
         assert option in text
     assert "examples:" in text

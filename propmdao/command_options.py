@@ -1,0 +1,141 @@
+"""Options that commands share: the propeller and its operating point; values of options."""
+
+from __future__ import annotations
+
+import argparse
+import math
+import re
+from typing import Any
+
+MAX_RPM_VALUES = 1000
+
+#: Placeholder and help of the options of an operating point.
+OPERATING_POINT = {
+    "--rpm": ("N", "rotation speed [rev/min]"),
+    "--thrust": ("N", "find the rotation speed that gives this thrust [N]"),
+    "--speed": ("M_S", "flight speed along the axis [m/s], default 0: hover"),
+    "--rho": ("KG_M3", "air density [kg/m3], default 1.225"),
+    "--twist-offset": ("DEG", "added to the blade angle everywhere [deg], default 0"),
+}
+
+
+def number(text: str) -> float:
+    """Value of an option that is a number.
+
+    Parameters
+    ----------
+    text : str
+        As typed.
+
+    Returns
+    -------
+    float
+        Finite.
+
+    Raises
+    ------
+    argparse.ArgumentTypeError
+        When it is none.
+    """
+    try:
+        value = float(text)
+    except ValueError:
+        value = math.nan
+    if not math.isfinite(value):
+        raise argparse.ArgumentTypeError(f"{text!r} is not a number")
+    return value
+
+
+def number_or_range(text: str) -> float | list[float]:
+    """Value of an option that is a number or a range.
+
+    Parameters
+    ----------
+    text : str
+        As typed; a range is START:STOP:STEP.
+
+    Returns
+    -------
+    float or list of float
+        The number, or the numbers of the range, STOP among them.
+
+    Raises
+    ------
+    argparse.ArgumentTypeError
+        When it is neither.
+    """
+    if ":" not in text:
+        return number(text)
+    parts = text.split(":")
+    if len(parts) != 3:
+        raise argparse.ArgumentTypeError(f"{text!r} is not a range START:STOP:STEP")
+    start, stop, step = map(number, parts)
+    if step <= 0.0 or stop < start:
+        raise argparse.ArgumentTypeError(
+            f"{text!r}: STEP of a range must be positive and STOP not below START"
+        )
+    # A step that fits the range up to rounding ends on STOP.
+    n_steps = math.floor((stop - start) / step * (1.0 + 1e-12))
+    if n_steps >= MAX_RPM_VALUES:
+        raise argparse.ArgumentTypeError(
+            f"{text!r} has {n_steps + 1} values, at most {MAX_RPM_VALUES} are allowed"
+        )
+    return [start + i * step for i in range(n_steps + 1)]
+
+
+def take_negative_ranges(command: argparse.ArgumentParser) -> None:
+    """Let values such as -2:4:0.5 follow options.
+
+    Parameters
+    ----------
+    command : argparse parser
+        Of a command. argparse takes -2 for a value and -2:4:0.5 for an option it does not know.
+    """
+    command._negative_number_matcher = re.compile(r"-\.?\d")
+
+
+def add_propeller(command: argparse.ArgumentParser) -> None:
+    """Add the propeller that a command is about.
+
+    Parameters
+    ----------
+    command : argparse parser
+        What it is added to.
+    """
+    command.add_argument(
+        "propeller",
+        metavar="PROPELLER",
+        help="name from 'propmdao list', or path of a propeller file (TOML)",
+    )
+
+
+def add_operating_point(
+    command: argparse.ArgumentParser, several_rpm: bool = False, required: bool = True
+) -> None:
+    """Add the options of one operating point.
+
+    Parameters
+    ----------
+    command : argparse parser
+        What they are added to.
+    several_rpm : bool
+        Whether there may be ranges and several values of rpm: then it is a list of both.
+    required : bool
+        Whether rpm or thrust has to be given.
+    """
+    drive = command.add_mutually_exclusive_group(required=required)
+    for option, (unit, text) in OPERATING_POINT.items():
+        how: dict[str, Any] = {"type": number}
+        if option == "--rpm" and several_rpm:
+            how = {"type": number_or_range, "action": "append"}
+            text += (
+                ", or a range START:STOP:STEP that includes STOP; may be repeated. Ranges and"
+                " repetition give a list, of one result per value"
+            )
+        if option not in ("--rpm", "--thrust"):
+            how["default"] = 1.225 if option == "--rho" else 0.0
+        to = drive if option in ("--rpm", "--thrust") else command
+        to.add_argument(option, metavar=unit, help=text, **how)
+    command.add_argument(
+        "--inviscid", action="store_true", help="without the polars of the sections: no drag"
+    )

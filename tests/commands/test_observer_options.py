@@ -1,0 +1,113 @@
+"""Observers, ground and air of a command line."""
+
+from __future__ import annotations
+
+import argparse
+
+import numpy as np
+import pytest
+
+from propmdao.acoustics.observers import hemisphere, point
+from propmdao.acoustics.propagation import Air
+from propmdao.acoustics.surroundings import Surroundings
+from propmdao.command_options import take_negative_ranges
+from propmdao.observer_options import (
+    add_observers,
+    add_surroundings,
+    observers_of,
+    surroundings_of,
+)
+
+
+def parse(arguments: str) -> argparse.Namespace:
+    parser = argparse.ArgumentParser(exit_on_error=False)
+    take_negative_ranges(parser)
+    add_observers(parser)
+    add_surroundings(parser)
+    return parser.parse_args(arguments.split())
+
+
+@pytest.mark.parametrize(
+    ("arguments", "observers"),
+    [
+        ("", []),
+        ("--arc 2 -45 0", [(2.0, -45.0, 0.0), (2.0, 0.0, 0.0)]),
+        ("--arc 2 -90:0:45", [(2.0, -90.0, 0.0), (2.0, -45.0, 0.0), (2.0, 0.0, 0.0)]),
+        ("--point 2 -10 90 --arc 1 0", [(1.0, 0.0, 0.0), (2.0, -10.0, 90.0)]),
+        ("--point 1:2:1 0 30", [(1.0, 0.0, 30.0), (2.0, 0.0, 30.0)]),
+        ("--circle 2 -30 3", [(2.0, -30.0, 0.0), (2.0, -30.0, 120.0), (2.0, -30.0, -120.0)]),
+        ("--grid 0:1:1 1 0", [(1.0, 0.0, 90.0), (np.sqrt(2.0), 0.0, 45.0)]),
+    ],
+)
+def test_observers_are_named_by_distance_elevation_and_azimuth(
+    arguments: str, observers: list[tuple[float, float, float]]
+) -> None:
+    found = observers_of(parse(arguments))
+    np.testing.assert_allclose(np.reshape(found, (-1, 3)), np.reshape(observers, (-1, 3)))
+
+
+def test_a_hemisphere_is_below_the_rotor_or_below_the_aircraft() -> None:
+    """And last: figures find it there."""
+    upright = point(*np.transpose(observers_of(parse("--hemisphere 5 30 --grid 0 0 1"))))
+    np.testing.assert_allclose(upright[1:], hemisphere(5.0, 30.0), atol=1e-8)
+    level = point(*np.transpose(observers_of(parse("--hemisphere 5 30 --level"))))
+    ahead, left, up = level[:, 2], level[:, 1], -level[:, 0]
+    np.testing.assert_allclose(
+        np.stack([ahead, left, up], axis=-1), hemisphere(5.0, 30.0), atol=1e-8
+    )
+
+
+def test_in_level_flight_a_grid_has_its_third_coordinate_up() -> None:
+    """Ten metres below the hub, five ahead: on the side of azimuth 0."""
+    ((radius, elevation, azimuth),) = observers_of(parse("--grid 5 0 -10 --level"))
+    assert radius == pytest.approx(np.sqrt(125.0))
+    assert elevation == pytest.approx(np.degrees(np.arctan2(5.0, 10.0)))
+    assert azimuth == 0.0
+
+
+@pytest.mark.parametrize(
+    ("arguments", "surroundings"),
+    [
+        ("", Surroundings()),
+        ("--ground 2.5", Surroundings(2.5)),
+        ("--ground flush --level", Surroundings("flush", True)),
+        ("--absorption", Surroundings(air=Air())),
+        ("--absorption -5 40", Surroundings(air=Air(268.15, 0.4))),
+        ("--absorption 20 50 9e4", Surroundings(air=Air(293.15, 0.5, 9e4))),
+    ],
+)
+def test_ground_and_air(arguments: str, surroundings: Surroundings) -> None:
+    assert surroundings_of(parse(arguments)) == surroundings
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        ("--arc 2", "--arc 2 needs one radius and then at least one elevation"),
+        ("--arc 1:2:1 0", "--arc 1 needs one radius"),
+        ("--circle 2 0 1.5", "--circle needs a whole number N of observers; it is 1.5"),
+        ("--circle 2 0 0", "it is 0"),
+        ("--hemisphere 2 7", "step of a hemisphere must divide 90 deg; got 7"),
+        ("--hemisphere 2 0.01", "a STEP of 1 deg or more; it is 0.01"),
+        ("--grid 0:999:1 0:99:1 -2", "--grid has 100000 observers, at most 20000"),
+        ("--grid 0:99:1 0:99:1 -2 --grid 0:99:1 0:99:1 -3 --arc 2 0", "20001 observers are more"),
+    ],
+)
+def test_observers_that_are_none(arguments: str, message: str) -> None:
+    with pytest.raises(ValueError, match=message):
+        observers_of(parse(arguments))
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        ("--ground 0", "height above ground must be positive .m.; it is 0"),
+        ("--absorption 1 2 3 4", "at most; it has 4 values"),
+        ("--absorption 51", "temperature must be within -20 ... 50 degrees Celsius; it is 51"),
+        ("--absorption 15 101", "relative humidity must be within 0 ... 100 %; it is 101"),
+        ("--absorption 15 70 1013.25e3", "pressure must be within 1000 ... 200000 Pa"),
+    ],
+)
+def test_surroundings_that_are_none(arguments: str, message: str) -> None:
+    with pytest.raises(ValueError, match=message):
+        surroundings_of(parse(arguments))
