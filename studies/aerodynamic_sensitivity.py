@@ -87,7 +87,7 @@ def variants(propeller: Propeller, with_n_crit: bool) -> Iterator[tuple[str, Pro
         )
     for transport in (0.75, 1.5):
         wake = partial(computed_with_wake, transport=transport)
-        yield f"wake at V + {transport:g} w", propeller, wake
+        yield f"drift of the wake x {transport:g}", propeller, wake
 
 
 def polars_at(propeller: Propeller, n_crit: float) -> SectionPolars:
@@ -114,7 +114,7 @@ def _shape_at(name: str, n_crit: float) -> np.ndarray:
 
 @partial(jax.jit, static_argnames="n_blades")
 def _loads(flow: Flow, n_blades: int, w: float, transport: float) -> LatticeLoads:
-    """Loads in a wake that moves at V + transport w, and widens and narrows accordingly."""
+    """Loads in a wake that drifts and contracts as if w were transport times what it is."""
     omega, ages = flow.rotation_speed, jnp.asarray(WAKE_AGES)
     trailing = flow.lattice.rings.corner[-1]
     wake = helical_wake(trailing, ages, n_blades, flow.radius, omega, flow.speed, transport * w)
@@ -127,7 +127,7 @@ def _loads(flow: Flow, n_blades: int, w: float, transport: float) -> LatticeLoad
 def computed_with_wake(
     propeller: Propeller, at: Points, twist_offset_deg: float, *, transport: float
 ) -> Points:
-    """As `computed`, with the wake carried at V + transport w instead of V + w."""
+    """As `computed`, with the induced velocity in the wake times `transport`."""
     propeller = dataclasses.replace(propeller, beta_deg=propeller.beta_deg + twist_offset_deg)
     blade, stations = Blade.from_propeller(propeller), propeller.r_over_R
     nodes = lattice_nodes(blade, span_interpolation(stations, lattice_span(stations[0], 24)), 8)

@@ -43,8 +43,8 @@ def test_thrust_is_that_of_momentum_theory_at_the_induced_velocity(slow_flyer, s
     ("speed", "low", "high"),
     [
         (8.0, 1.08, 1.11),
-        (3.0, 1.12, 1.15),
-        (0.0, 1.06, 1.10),
+        (3.0, 1.14, 1.18),
+        (0.0, 1.13, 1.18),
     ],
 )
 def test_power_over_that_of_the_ideal_actuator_disk(slow_flyer, speed, low, high):
@@ -99,7 +99,7 @@ def test_derivatives_are_those_of_the_converged_solution(slow_flyer, speed):
 
     def outputs(step):
         solution = solve_steady(
-            nodes + step * direction, 2, 0.1397, OMEGA + step, speed + 0.1 * step, 1.2 + 0.01 * step
+            nodes + step * direction, 2, 0.1397, OMEGA + step, speed + 0.3 * step, 1.2 + 0.01 * step
         )
         return jnp.stack([solution.thrust, solution.torque, solution.induced_velocity])
 

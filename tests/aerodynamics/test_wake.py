@@ -4,7 +4,12 @@ import jax.numpy as jnp
 import numpy as np
 import pytest
 
-from propmdao.aerodynamics.wake import helical_wake, momentum_induced_velocity, wake_azimuths
+from propmdao.aerodynamics.wake import (
+    helical_wake,
+    momentum_induced_velocity,
+    outer_part,
+    wake_azimuths,
+)
 
 RHO, RADIUS, OMEGA = 1.2, 0.15, 400.0
 AREA = np.pi * RADIUS**2
@@ -39,16 +44,44 @@ def test_without_induced_velocity_the_wake_is_the_rigid_helix():
     np.testing.assert_allclose(wake[0, 1, :, :2], -wake[0, 0, :, :2], atol=1e-15)
 
 
-@pytest.mark.parametrize("speed", [0.0, 8.0])
-def test_wake_moves_with_the_mean_of_both_sides_of_the_stream_and_contracts(speed):
-    induced = 5.0
-    ages, wake = wake_of(speed, induced)
+def drift_of(node, speed, induced, n_blades):
+    """Ages in blade passages, and axial velocity relative to the free stream in w."""
+    ages = jnp.linspace(0.0, 8 * np.pi, 4801)
+    wake = helical_wake(node[None], ages, n_blades, RADIUS, OMEGA, speed, induced)
     velocity = -np.diff(wake[0, 0, :, 2]) / np.diff(ages) * OMEGA
-    # Inside the far stream V + 2 w, outside V.
-    np.testing.assert_allclose(velocity, speed + induced, rtol=1e-9)
+    return 0.5 * (ages[1:] + ages[:-1]) * n_blades / (2 * np.pi), (velocity - speed) / induced
+
+
+@pytest.mark.parametrize("speed", [0.0, 8.0])
+@pytest.mark.parametrize("n_blades", [2, 3])
+def test_tip_drifts_slowly_until_the_next_blade_has_passed(speed, n_blades):
+    passed, drift = drift_of(jnp.array([RADIUS, 0.0, 0.0]), speed, 5.0, n_blades)
+    np.testing.assert_allclose(drift[passed < 0.2], 0.7 / n_blades, atol=0.02)
+    assert drift[np.argmin(np.abs(passed - 1.0))] == pytest.approx(0.5 + 0.35 / n_blades, abs=0.01)
+    # The mean of both sides: inside the far stream V + 2 w, outside V.
+    np.testing.assert_allclose(drift[passed > 2.0], 1.0, atol=0.01)
+
+
+@pytest.mark.parametrize("speed", [0.0, 8.0])
+def test_inner_sheet_is_carried_by_the_air_of_the_far_stream(speed):
+    _, drift = drift_of(TRAILING[0], speed, 5.0, 2)
+    np.testing.assert_allclose(drift, 2.0, rtol=1e-9)
+
+
+@pytest.mark.parametrize("speed", [0.0, 8.0])
+def test_wake_contracts_by_continuity(speed):
+    induced = 5.0
+    _, wake = wake_of(speed, induced)
     radius = np.hypot(wake[0, 0, :, 0], wake[0, 0, :, 1])
     continuity = np.sqrt((speed + induced) / (speed + 2 * induced))
     assert radius[-1] / radius[0] == pytest.approx(continuity, rel=1e-3)
+
+
+def test_sheet_parts_between_the_inner_and_the_tip_smoothly():
+    r = jnp.linspace(0.0, 1.0, 1001)
+    part = outer_part(r)
+    assert not part[r <= 0.7].any() and part[-1] == 1.0 and (np.diff(part) >= 0).all()
+    assert np.abs(np.diff(part, 2)).max() < 1e-4  # no kink: a step of slope 1 would leave 1e-3
 
 
 def test_wake_trails_behind_a_blade_that_turns_counter_clockwise():

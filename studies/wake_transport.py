@@ -1,0 +1,163 @@
+"""Whether the prescribed wake moves as it itself and the blades say.
+
+The sheets that the blades leave are let drift: their inner part as one, their outer part, which
+becomes the tip vortex, as another, each with the mean of the velocity that all sheets and blades
+induce on it, and they contract with the mean radial velocity of the outer part. Sheets, circulation
+and the induced velocity of momentum theory are solved together by relaxation. That wake knows no
+law; beside it stand the thrust and the power of the prescribed wake of
+`propmdao.aerodynamics.wake`, which is a curve through what comes out here, and of which it is the
+evidence. Inviscid flow; two, three and four blades.
+"""
+
+import argparse
+import dataclasses
+from pathlib import Path
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+from aerodynamic_validation import show, write_csv
+
+from propmdao.aerodynamics import wake
+from propmdao.aerodynamics.coefficients import coefficients
+from propmdao.aerodynamics.lattice_loads import lattice_geometry, loads_with_wake
+from propmdao.aerodynamics.rings import BOUND_CORE, blade_influence, wake_influence
+from propmdao.aerodynamics.steady import WAKE_AGES, solve_steady
+from propmdao.geometry.blade import Blade, span_interpolation
+from propmdao.geometry.lattice import lattice_nodes, lattice_span
+from propmdao.propeller import Propeller, load_propeller
+
+CASES = [(name, 2, J) for name in ("apcsf_11x4.7", "apce_10x7") for J in (0.0, 0.2, 0.4)]
+CASES += [("apcsf_11x4.7", n_blades, J) for n_blades in (3, 4) for J in (0.0, 0.2)]
+RPM, DENSITY, AIR_VISCOSITY = 4200.0, 1.225, 1.46e-5  # rpm, kg/m3, m2/s
+CORE = 0.03  # of the sheets where they act on themselves, in radii: 0.01 to 0.06 change CT by 0.1 %
+RELAXATION, STEPS = 0.3, 24
+LAST_TURN = 3.5  # beyond it the end of the wake is felt: the velocity of the turn before is kept
+PASSAGES = (0.0, 0.85), (1.2, 4.0)  # of the next blade: before, and after
+FORMATS = {"propeller": "", "blades": "d", "J": ".1f", "CT": ".4f", "P/ideal": ".3f",
+           "r/r0": ".2f", "before": ".2f", "after": ".2f", "inner": ".2f", "CT, %": "+.1f",
+           "CP, %": "+.1f"}  # fmt: skip
+
+_loads = jax.jit(loads_with_wake)
+_by_wake = jax.jit(wake_influence)
+_by_blades = jax.jit(blade_influence, static_argnames="n_blades")
+
+
+def nodes_of(propeller: Propeller) -> jax.Array:
+    """Corner points of its lattice."""
+    stations = propeller.r_over_R
+    span = span_interpolation(stations, lattice_span(stations[0], 24))
+    return lattice_nodes(Blade.from_propeller(propeller), span, 8)
+
+
+def relaxed(propeller: Propeller, speed: float, steps: int = STEPS) -> dict[str, float]:
+    """Thrust and power of the wake that moves as it says, and how it moves, in w."""
+    n_blades, radius, omega = propeller.n_blades, 0.5 * propeller.diameter, RPM * np.pi / 30.0
+    nodes = nodes_of(propeller)
+    lattice = lattice_geometry(nodes, n_blades, radius)
+    core, thick = (
+        wake.core_radius(jnp.asarray(WAKE_AGES), omega, AIR_VISCOSITY, of * radius)
+        for of in (BOUND_CORE, CORE)
+    )
+    trailing, time = np.asarray(lattice.rings.corner[-1]), WAKE_AGES / omega
+    r0 = np.hypot(trailing[:, 0], trailing[:, 1])
+    outward = np.asarray(wake.outer_part(r0 / radius))
+    inside = (1.0 - outward) * (r0 > 0.35 * radius) * np.gradient(r0) * r0  # area, without the hub
+
+    induced = float(solve_steady(nodes, n_blades, radius, omega, speed, DENSITY).induced_velocity)
+    rigid = (speed + induced) * time
+    drift = np.stack([rigid, rigid, np.ones_like(time)])  # of outer, inner part, and contraction
+    for _ in range(steps):
+        axial = outward[:, None] * drift[0] + (1.0 - outward)[:, None] * drift[1]
+        sheets = wake.helices(trailing, WAKE_AGES, n_blades, axial, drift[2])
+        loads = _loads(lattice, sheets, core, omega, speed, induced, DENSITY, None)
+        thrust, torque = n_blades * float(loads.thrust), n_blades * float(loads.torque)
+        induced = float(
+            wake.momentum_induced_velocity(
+                thrust, speed, omega * radius, DENSITY, np.pi * radius**2
+            )
+        )
+        middle = np.asarray(0.5 * (sheets[:, 0, 1:] + sheets[:, 0, :-1]))
+        at, circulation = middle.reshape(-1, 3), loads.circulation
+        velocity = jnp.tensordot(circulation[-1], _by_wake(at, sheets, thick), axes=(0, 1))
+        by_blades = _by_blades(at, lattice.rings, n_blades, radius)
+        velocity += jnp.tensordot(circulation, by_blades, axes=((0, 1), (1, 2)))
+        x, y, z = np.asarray(velocity).reshape(3, *middle.shape[:2])
+        radial = (x * middle[..., 0] + y * middle[..., 1]) / np.hypot(*middle[..., :2].T).T
+
+        shed = np.abs(np.diff(np.pad(np.asarray(circulation[-1]), 1)))
+        tip = shed * (np.arange(shed.size) > np.argmax(circulation[-1]))
+        outer, inner = (
+            _settled(np.average(-z, axis=0, weights=of)) for of in (shed * outward, inside)
+        )
+        inward = np.average(radial, axis=0, weights=tip) * (WAKE_AGES[1:] < 4.0 * np.pi)
+        change = [speed + outer, speed + inner, inward / np.average(r0, weights=tip)]
+        towards = np.cumsum(np.pad(change * np.diff(time), ((0, 0), (1, 0))), axis=1)
+        towards[2] += 1.0
+        drift += RELAXATION * (towards - drift)
+    of = coefficients(thrust, torque, omega, speed, DENSITY, propeller.diameter)
+    passed = 0.5 * (WAKE_AGES[1:] + WAKE_AGES[:-1]) * n_blades / (2.0 * np.pi)
+    bands = [(passed > low) & (passed <= high) for low, high in PASSAGES]
+    return {
+        "CT": float(of.CT),
+        "CP": float(of.CP),
+        "P/ideal": torque * omega / (thrust * (speed + induced)),
+        "r/r0": float(drift[2, -1]),
+        "before": float(outer[bands[0]].mean() / induced),
+        "after": float(outer[bands[1]].mean() / induced),
+        "inner": float(inner.mean() / induced),
+    }
+
+
+def _settled(velocity: np.ndarray) -> np.ndarray:
+    """Velocity of the turn before the last ones in their stead."""
+    age = WAKE_AGES[1:] / (2.0 * np.pi)
+    before = (age > LAST_TURN - 1.0) & (age <= LAST_TURN)
+    return np.where(age > LAST_TURN, velocity[before].mean(), velocity)
+
+
+def prescribed(propeller: Propeller, speed: float) -> dict[str, float]:
+    """Thrust and power of the prescribed wake."""
+    radius, omega = 0.5 * propeller.diameter, RPM * np.pi / 30.0
+    n_blades = propeller.n_blades
+    found = solve_steady(nodes_of(propeller), n_blades, radius, omega, speed, DENSITY)
+    of = coefficients(found.thrust, found.torque, omega, speed, DENSITY, propeller.diameter)
+    return {"CT": float(of.CT), "CP": float(of.CP)}
+
+
+def compare(cases: list[tuple[str, int, float]], steps: int = STEPS) -> list[dict[str, object]]:
+    """A row of figures for every case."""
+    rows = []
+    for name, n_blades, J in cases:
+        propeller = dataclasses.replace(load_propeller(name), n_blades=n_blades)
+        speed = J * RPM / 60.0 * propeller.diameter
+        free, ours = relaxed(propeller, speed, steps), prescribed(propeller, speed)
+        differences = {
+            f"{key}, %": 100.0 * (value / free[key] - 1.0) for key, value in ours.items()
+        }
+        rows.append({"propeller": name, "blades": n_blades, "J": J} | free | differences)
+    return rows
+
+
+def main() -> None:
+    """Relax, compare, print the table."""
+    parser = argparse.ArgumentParser(description=__doc__.split("\n\n")[0])
+    parser.add_argument("--quick", action="store_true", help="two cases")
+    parser.add_argument("--output", type=Path, default="results/wake_transport",
+                        help="folder, default %(default)s")  # fmt: skip
+    options = parser.parse_args()
+    output = options.output.absolute()
+    output.mkdir(parents=True, exist_ok=True)
+    rows = compare(CASES[:2] if options.quick else CASES)
+    write_csv(output / "wake_transport.csv", rows)
+    show(rows, FORMATS)
+    print(
+        "CT, P/ideal, r/r0: of the relaxed wake, inviscid; r/r0 of the tip vortex far downstream."
+    )
+    print("Before, after, inner: drift relative to the free stream in induced velocities w, of the")
+    print("outer part before and after the next blade has passed, and of the inner part.")
+    print(f"CT, CP in %: difference of the prescribed wake. As CSV: {output}")
+
+
+if __name__ == "__main__":
+    main()
