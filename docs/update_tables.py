@@ -33,6 +33,7 @@ sys.path.insert(0, str(HERE.parent / "studies"))
 import aerodynamic_sensitivity  # noqa: E402
 import aerodynamic_validation  # noqa: E402
 import hover_noise as hover_noise_study  # noqa: E402
+import wake_transport as wake_study  # noqa: E402
 
 SLOW_FLYER = load_propeller("apcsf_11x4.7")
 RADIUS, DENSITY = 0.1397, 1.225
@@ -114,6 +115,11 @@ def change(solution, base) -> tuple[str, str]:
         f"{100.0 * float(getattr(solution, name) / getattr(base, name) - 1.0):+.2f} %"
         for name in ("thrust", "torque")
     )
+
+
+def wake_transport() -> Rows:
+    """The wake that moves as it says, and the prescribed one beside it."""
+    return _formatted(wake_study.compare(wake_study.CASES), wake_study.FORMATS)
 
 
 def ideal_disk() -> Rows:
@@ -232,6 +238,7 @@ TABLES: dict[str, Callable[[], Rows]] = {
     "targets": targets,
     "lattice": lattice_convergence,
     "wake": wake_convergence,
+    "wake transport": wake_transport,
     "ideal disk": ideal_disk,
     "wind tunnel": summary,
     "run at 4003 rpm": run_4003,
