@@ -1,4 +1,4 @@
-"""Command line: ``propmdao list``, ``analyze``, ``sweep`` and ``wopwop``.
+"""Command line: ``propmdao list`` and the commands that have files of their own.
 
 Written with argparse because ``--arc RADIUS ELEVATION...`` takes any number of values, negative
 ones among them, which parsers that give every option a fixed number of values cannot read.
@@ -15,6 +15,7 @@ from typing import NoReturn
 
 import propmdao
 from propmdao.analyze_command import add_analyze
+from propmdao.export_command import add_export
 from propmdao.json_output import print_json
 from propmdao.sweep_command import add_sweep
 from propmdao.wopwop_command import add_wopwop
@@ -87,6 +88,7 @@ def build_parser() -> argparse.ArgumentParser:
 
     add_analyze(commands)
     add_sweep(commands)
+    add_export(commands)
     add_wopwop(commands)
     return parser
 

@@ -46,7 +46,8 @@ def write_blade(
         If the file cannot be written.
     """
     geometry = dataclasses.replace(
-        blade_geometry(_surface(propeller, fidelity), None), comment=f"propmdao {propeller.name}"
+        blade_geometry(blade_surface(propeller, fidelity), None),
+        comment=f"propmdao {propeller.name}",
     )
     try:
         write_geometry(path, geometry)
@@ -100,7 +101,7 @@ def write_propeller_case(
     write_case(
         folder,
         [Rotor(equally_spaced(propeller.n_blades), omega, loads=loads)],
-        [_surface(propeller, fidelity)],
+        [blade_surface(propeller, fidelity)],
         Observers(jnp.asarray(observers, float).reshape(-1, 3), jnp.asarray(velocity)),
         np.arange(n_times) * 2 * np.pi / (omega * n_times),
         density,
@@ -109,7 +110,21 @@ def write_propeller_case(
     )
 
 
-def _surface(propeller: Propeller, fidelity: Fidelity) -> Array:
+def blade_surface(propeller: Propeller, fidelity: Fidelity) -> Array:
+    """Points of the skin of blade 1.
+
+    Parameters
+    ----------
+    propeller : Propeller
+        The described blade.
+    fidelity : Fidelity
+        Numbers of points of the surface.
+
+    Returns
+    -------
+    (n_contour, n_surface_span, 3) array
+        As `surface_nodes` orders them [m].
+    """
     stations = propeller.r_over_R
     span = span_interpolation(stations, surface_span(stations[0], fidelity.n_surface_span))
     return surface_nodes(Blade.from_propeller(propeller), span, fidelity.n_contour)

@@ -88,8 +88,36 @@ def surface_nodes(blade: Blade, span: SpanInterpolation, n_contour: int = 65) ->
     return place_sections(blade, span, fraction, camber + side * thickness)
 
 
+def surface_quads(nodes: jax.Array) -> tuple[jax.Array, jax.Array, jax.Array, jax.Array]:
+    """Close the contours into a watertight surface of quadrilaterals.
+
+    Parameters
+    ----------
+    nodes : (n_contour, n_span, 3) array
+        Points of `surface_nodes`.
+
+    Returns
+    -------
+    a, b, c, d : (n, 3) arrays
+        Corners [m], counter-clockwise seen from outside: n_contour * (n_span - 1) of the skin, the
+        one across the trailing edge included (without area where that is sharp), then
+        (n_contour - 1) / 2 across the root and as many across the tip.
+    """
+    around = jnp.concatenate([nodes, nodes[:1]])
+    half = (nodes.shape[0] - 1) // 2
+    upper, lower = nodes[: half + 1], nodes[half:][::-1]
+    skin = around[:-1, :-1], around[:-1, 1:], around[1:, 1:], around[1:, :-1]
+    root = upper[:-1, 0], upper[1:, 0], lower[1:, 0], lower[:-1, 0]
+    tip = upper[:-1, -1], lower[:-1, -1], lower[1:, -1], upper[1:, -1]
+    a, b, c, d = (
+        jnp.concatenate([corner.reshape(-1, 3), at_root, at_tip])
+        for corner, at_root, at_tip in zip(skin, root, tip, strict=True)
+    )
+    return a, b, c, d
+
+
 def surface_panels(nodes: jax.Array) -> Panels:
-    """Close the contours into a watertight surface.
+    """Panels of the watertight surface.
 
     Parameters
     ----------
@@ -99,24 +127,7 @@ def surface_panels(nodes: jax.Array) -> Panels:
     Returns
     -------
     Panels
-        n_contour * (n_span - 1) panels of the skin, the one across the trailing edge included
-        (without area where that is sharp), then (n_contour - 1) / 2 across the root and as many
-        across the tip.
+        In the order of `surface_quads`.
     """
-    around = jnp.concatenate([nodes, nodes[:1]])
-    center, area = _quads(around[:-1, :-1], around[:-1, 1:], around[1:, 1:], around[1:, :-1])
-    half = (nodes.shape[0] - 1) // 2
-    upper, lower = nodes[: half + 1], nodes[half:][::-1]
-    root = _quads(upper[:-1, 0], upper[1:, 0], lower[1:, 0], lower[:-1, 0])
-    tip = _quads(upper[:-1, -1], lower[:-1, -1], lower[1:, -1], upper[1:, -1])
-    return Panels(
-        center=jnp.concatenate([center, root[0], tip[0]]),
-        vector_area=jnp.concatenate([area, root[1], tip[1]]),
-    )
-
-
-def _quads(a: jax.Array, b: jax.Array, c: jax.Array, d: jax.Array) -> tuple[jax.Array, jax.Array]:
-    """Return center and vector area of the quadrilaterals abcd, each (n, 3)."""
-    center = 0.25 * (a + b + c + d)
-    area = 0.5 * jnp.cross(c - a, d - b)
-    return center.reshape(-1, 3), area.reshape(-1, 3)
+    a, b, c, d = surface_quads(nodes)
+    return Panels(center=0.25 * (a + b + c + d), vector_area=0.5 * jnp.cross(c - a, d - b))
