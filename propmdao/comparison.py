@@ -15,6 +15,7 @@ from propmdao.analysis import Analysis
 
 Row = tuple[str, str, str]
 Cell = float | str | None
+Rows = list[tuple[str, ...]]  # of a table, its head first
 
 #: Rows of an operating point and what one observer hears: label, key, format.
 ROWS: tuple[Row, ...] = (
@@ -90,6 +91,23 @@ def print_comparison(
             )
             writer.writerow([label, before, after, change, *rest])
     Console(highlight=False).print(table)
+
+
+def markdown(rows: Rows) -> str:
+    """Write rows as a Markdown table.
+
+    Parameters
+    ----------
+    rows : list of tuple of str
+        The head first, all of one length.
+
+    Returns
+    -------
+    str
+        Lines that end in a line break.
+    """
+    head, *body = rows
+    return "".join(f"| {' | '.join(row)} |\n" for row in (head, ("---",) * len(head), *body))
 
 
 def _format(cell: Cell, form: str) -> str:

@@ -9,7 +9,7 @@ It is the problem of tables 4.8 to 4.10 in "Study of the noise and aerodynamics 
 in drones by applying a low-fidelity method" (bachelor thesis, Universidade Federal de Uberlandia,
 2022), but for the bounds of the rotation speed: 4000 to 5000 rpm nearly exclude the baseline.
 Differential evolution is the thesis' choice and needs no derivatives; with them, which this model
-has, ``om.ScipyOptimizeDriver(optimizer="SLSQP")`` arrives at the same blade in ten evaluations.
+has, SLSQP arrives at the same blade in some ten evaluations: `gradient_design.py`.
 """
 
 import argparse
@@ -26,7 +26,8 @@ from propmdao.comparison import ROWS, Cell, at_observer, print_comparison
 from propmdao.components import DifferentialEvolutionDriver, PropellerGroup
 from propmdao.components.geometry_comp import blade_distributions
 from propmdao.fidelity import Fidelity
-from propmdao.geometry.airfoil import CHORD_FRACTION, max_camber_for_design_lift, naca4
+from propmdao.geometry.airfoil import max_camber_for_design_lift
+from propmdao.naca_blade import with_naca_sections
 from propmdao.propeller import Propeller, load_propeller
 
 BASELINE = load_propeller("apcsf_11x4.7_thesis")
@@ -122,24 +123,11 @@ def evaluate(
 
 def naca_blade(name: str, design: dict[str, list[float]], folder: Path) -> Propeller:
     """Make the blade of a design and write it as a file that `propmdao analyze` reads."""
-    airfoils = []
-    for (at, r), thickness, lift in zip(AT.items(), design[T_C], design[CL_I], strict=True):
-        section = naca4(max_camber_for_design_lift(lift), 0.4, thickness)
-        half = 0.5 * section.thickness
-        x = np.append(CHORD_FRACTION[::-1], CHORD_FRACTION[1:])
-        z = np.append((section.camber + half)[::-1], (section.camber - half)[1:])
-        file = folder / f"{name}_{at}.dat"
-        np.savetxt(file, np.transpose([x, z]))
-        airfoils.append((r, str(file)))
-    blade = dataclasses.replace(
-        BASELINE,
-        name=name,
-        airfoils=airfoils,
-        thickness_over_chord=np.interp(BASELINE.r_over_R, list(AT.values()), design[T_C]),
+    return with_naca_sections(
+        BASELINE, name, [*AT.values()],
+        [max_camber_for_design_lift(lift) for lift in design[CL_I]], design[T_C], folder,
         source=f"chord and blade angle of {BASELINE.name}, sections of a design study",
-    )
-    blade.to_toml(folder / f"{name}.toml")
-    return blade
+    )  # fmt: skip
 
 
 def column(propeller: Propeller, analysis: Analysis) -> dict[str, Cell]:
