@@ -34,16 +34,15 @@ def test_every_airfoil_loads_and_names_its_source(name: str) -> None:
     assert tomllib.loads(airfoil_file(name).read_text(encoding="utf-8"))["name"]
 
 
-@pytest.mark.parametrize(
-    ("name", "diameter"), [("apcsf_11x4.7", 0.2794), ("apcsf_10x4.7", 0.254), ("apce_10x7", 0.254)]
-)
-def test_diameter_is_the_inches_in_the_name(name: str, diameter: float) -> None:
+@pytest.mark.parametrize("name", [name for name in catalog_names() if not name.endswith("_thesis")])
+def test_diameter_is_the_inches_in_the_name(name: str) -> None:
     propeller = load_propeller(name)
-    assert propeller.diameter == diameter
+    inches = float(name.split("_")[1].split("x")[0])
+    assert propeller.diameter == pytest.approx(0.0254 * inches, abs=1e-12)
     assert propeller.n_blades == 2
 
 
-@pytest.mark.parametrize("name", ["apcsf_11x4.7", "apcsf_10x4.7"])
+@pytest.mark.parametrize("name", ["apcsf_11x4.7", "apcsf_10x4.7", "apcsf_9x4.7"])
 def test_slow_flyers_have_the_sections_of_the_makers_table_of_a_sister(name: str) -> None:
     propeller = load_propeller(name)
     assert propeller.airfoils == ((0.15, "e63"), (0.94, "e63"), (1.0, "naca4412"))
@@ -67,17 +66,36 @@ def test_the_sections_of_the_thesis_can_be_chosen() -> None:
     np.testing.assert_array_equal(thesis.c_over_R, own.c_over_R)
 
 
-def test_what_is_assumed_about_the_thin_electric_is_said() -> None:
-    source = load_propeller("apce_10x7").source
+@pytest.mark.parametrize("name", ["apce_10x5", "apce_10x7", "apce_11x5.5"])
+def test_what_is_assumed_about_the_thin_electrics_is_said(name: str) -> None:
+    source = load_propeller(name).source
     assert "ASSUMED, not published for this blade: sections" in source
     assert "thickness from" in source
 
 
-@pytest.mark.parametrize("name", ["apcsf_11x4.7", "apcsf_10x4.7", "apce_10x7"])
+@pytest.mark.parametrize("name", ["apcsf_10x7", "apce_16x8"])
+def test_blades_of_the_makers_own_table(name: str, reference_data: Path) -> None:
+    propeller = load_propeller(name)
+    table = np.loadtxt(reference_data / "uiuc_geometry" / f"{name}.csv", delimiter=",", skiprows=1)
+    radius = 0.5 * propeller.diameter
+    for own, column, tolerance in (
+        (propeller.c_over_R, table[:, 1] / radius, 6e-5),
+        (propeller.beta_deg, table[:, 2], 6e-3),
+        (propeller.thickness_over_chord, table[:, 3], 6e-5),
+    ):
+        expected = np.interp(propeller.r_over_R, table[:, 0] / radius, column)
+        np.testing.assert_allclose(own, expected, atol=tolerance)
+
+
+UIUC_GEOMETRIES = ["apcsf_9x4.7", "apcsf_10x4.7", "apcsf_11x4.7", "apce_10x5", "apce_10x7",
+                   "apce_11x5.5"]  # fmt: skip
+
+
+@pytest.mark.parametrize("name", UIUC_GEOMETRIES)
 def test_chord_and_blade_angle_are_the_published_ones(name: str, reference_data: Path) -> None:
     shipped = load_propeller(name)
     published = read_uiuc_geometry(
-        reference_data / "uiuc" / f"{name}_geom.csv",
+        reference_data / "uiuc_geometry" / f"{name}.csv",
         diameter=shipped.diameter,
         n_blades=shipped.n_blades,
         airfoils=shipped.airfoils,
