@@ -30,7 +30,7 @@ class Search(NamedTuple):
 
 
 def run_slsqp(
-    prob: om.Problem, file: str | os.PathLike[str], tolerance: float = 1e-6, iterations: int = 100
+    prob: om.Problem, file: str | os.PathLike[str], tolerance: float = 1e-5, iterations: int = 100
 ) -> Search:
     """Leave the optimum in a problem and say how it was found.
 

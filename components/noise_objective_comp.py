@@ -5,10 +5,31 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 import openmdao.api as om
 from scipy.special import logsumexp, softmax
 
 _PER_DB = np.log(10.0) / 10.0
+
+
+def soft_maximum_db(level_db: npt.ArrayLike, exponent: float) -> float:
+    """Power mean of levels.
+
+    Parameters
+    ----------
+    level_db : array
+        Levels [dB].
+    exponent : float
+        As in `NoiseObjectiveComp`.
+
+    Returns
+    -------
+    float
+        Their power mean [dB].
+    """
+    levels, slope = np.asarray(level_db), exponent * _PER_DB
+    mean: float = (logsumexp(slope * levels) - np.log(levels.size)) / slope
+    return mean
 
 
 class NoiseObjectiveComp(om.ExplicitComponent):
@@ -59,9 +80,7 @@ class NoiseObjectiveComp(om.ExplicitComponent):
         self.declare_partials("soft_maximum_db", "level_db")
 
     def compute(self, inputs: Any, outputs: Any) -> None:
-        slope = self.options["exponent"] * _PER_DB
-        levels = inputs["level_db"]
-        outputs["soft_maximum_db"] = (logsumexp(slope * levels) - np.log(levels.size)) / slope
+        outputs["soft_maximum_db"] = soft_maximum_db(inputs["level_db"], self.options["exponent"])
 
     def compute_partials(self, inputs: Any, partials: Any) -> None:
         weights = softmax(self.options["exponent"] * _PER_DB * inputs["level_db"])

@@ -1,0 +1,197 @@
+"""Quieter propellers by derivatives: six variables, then a free-form blade. To copy and change.
+
+- *Thesis' problem*: the six variables of `low_noise_design.py` by SLSQP instead of differential
+  evolution.
+- *Quiet tones* and *quiet total*: the 29 variables of `free_form_blade.py`. One minimises the
+  tones and the other the A-weighted total with broadband noise, and each holds what the other
+  minimises at the baseline's, with thrust, torque, thickness of the sections and slopes.
+- ``--evolution N``: two levels, N designs of differential evolution and SLSQP from the best, on
+  the thesis' problem: whether another valley than SLSQP's holds something better.
+
+Printed are a table of the blades, what each kind of variable has brought, and the cost; the folder
+has figures, the blades as propeller files and what the drivers recorded. An analysis that fails
+ends SLSQP, so the bounds leave out what cannot be analysed.
+"""
+
+import argparse
+import time
+from pathlib import Path
+from typing import NamedTuple
+
+import free_form_blade as free_form
+import low_noise_design as thesis
+import numpy as np
+
+from propmdao import acoustic_plots, directivity_plots, optimisation_plots, plots
+from propmdao.acoustics.levels import level_db, level_dba, oaspl_db
+from propmdao.aerodynamics.section_laws import AIR_VISCOSITY
+from propmdao.analysis import Analysis, analyze
+from propmdao.comparison import Cell, Row, Rows, markdown, print_comparison
+from propmdao.components.gradient_search import Search, run_slsqp
+from propmdao.components.noise_objective_comp import soft_maximum_db
+from propmdao.components.search_history import read_history
+from propmdao.fidelity import Fidelity
+from propmdao.propeller import Propeller
+from propmdao.self_noise import BANDS_HZ
+
+QUICK = Fidelity(n_chordwise=4, n_spanwise=12, n_contour=21, n_surface_span=20, n_harmonics=4)
+TOLERANCE = 1e-4  # of a constraint in driver scaling
+ROWS: tuple[Row, ...] = (
+    ("rotation speed, rpm", "rpm", ".0f"),
+    ("thrust, N", "thrust", ".4f"),
+    ("torque, mN m", "torque", ".3f"),
+    ("tones, soft maximum, dB", "tones", ".2f"),
+    ("total, soft maximum, dBA", "total", ".2f"),
+    ("  without laminar shedding", "tripped", ".2f"),
+    ("tones at -45 deg, dB", "tones_at", ".2f"),
+    ("  thickness noise, dB", "thickness_at", ".2f"),
+    ("  loading noise, dB", "loading_at", ".2f"),
+    ("broadband at -45 deg, dB", "broadband_at", ".2f"),
+    ("mean r/R of the thrust", "thrust_radius", ".3f"),
+    ("blade area, cm2", "area", ".1f"),
+    ("least Re beyond r/R 0.4", "reynolds", ".0f"),
+)
+
+
+def evaluate(propeller: Propeller) -> Analysis:
+    """Analyse a propeller at the thrust, in the row of microphones and over the arc."""
+    elevations = [*free_form.MICROPHONES, *thesis.DIRECTIVITY]
+    return analyze(
+        propeller, thrust=thesis.THRUST, speed=thesis.SPEED, density=thesis.DENSITY,
+        observers=[(thesis.DISTANCE, at) for at in elevations], broadband=True,
+        fidelity=thesis.FIDELITY,
+    )  # fmt: skip
+
+
+def column(propeller: Propeller, of: Analysis) -> dict[str, Cell]:
+    """What the table shows of a blade."""
+    heard, n = of.to_dict()["observers"], len(free_form.MICROPHONES)
+    at, p = n + thesis.MICROPHONE_INDEX, free_form.EXPONENT
+    strips, pressure, noise = of.steady.strips, of.tones, of.broadband
+    assert noise is not None
+    # As if the boundary layers were tripped; the tones are far below.
+    turbulent = level_dba(BANDS_HZ, noise.total[:n] - noise.laminar_shedding[:n])
+    r, thrust = np.asarray(strips.r_over_R), np.asarray(of.steady.strip_thrust)
+    reynolds = of.density * of.steady.sections.relative_speed * strips.chord / AIR_VISCOSITY
+    radius = 0.5 * propeller.diameter
+    return {
+        "rpm": of.rpm,
+        "thrust": float(of.steady.thrust),
+        "torque": 1e3 * float(of.steady.torque),
+        "tones": soft_maximum_db(oaspl_db(pressure.total[:n]), p),
+        "total": soft_maximum_db([one["oaspl_dba"] for one in heard[:n]], p),
+        "tripped": soft_maximum_db(turbulent, p),
+        "tones_at": float(oaspl_db(pressure.total[at])),
+        "thickness_at": float(oaspl_db(pressure.thickness[at])),
+        "loading_at": float(oaspl_db(pressure.loading[at])),
+        "broadband_at": float(level_db(noise.total[at].sum())),
+        "thrust_radius": float(r @ thrust / thrust.sum()),
+        "area": 1e4 * radius**2 * float(np.trapezoid(propeller.c_over_R, propeller.r_over_R)),
+        "reynolds": float(np.min(np.asarray(reynolds)[r > 0.4])),
+    }
+
+
+def cost(searches: dict[str, Search]) -> Rows:
+    """How each design was found, its head first."""
+    rows: Rows = [("search", "designs", "objective at start", "at the end", "largest violation",
+                   "time, s", "compiling, s")]  # fmt: skip
+    for name, (of, seconds, compiling) in searches.items():
+        rows.append(
+            (name, f"{of.objective.size}", f"{of.objective[0]:.3f}", f"{of.objective[-1]:.3f}",
+             f"{of.violation[-1]:.1e}", f"{seconds:.0f}", f"{compiling:.0f}")
+        )  # fmt: skip
+    return rows
+
+
+class Results(NamedTuple):
+    """Blades by name with their analyses and how they were found."""
+
+    blades: dict[str, Propeller]
+    analyses: dict[str, Analysis]
+    searches: dict[str, Search]
+    contributions: dict[str, Rows]
+
+    def columns(self) -> dict[str, dict[str, Cell]]:
+        """Table of the blades, by their names."""
+        return {name: column(self.blades[name], of) for name, of in self.analyses.items()}
+
+
+def design(output: Path, evolution: int = 0) -> Results:
+    """Search and write the blades; `evolution` designs of differential evolution, 0 for none."""
+    blades = {"APC-SF": thesis.BASELINE}
+    analyses = {"APC-SF": evaluate(thesis.BASELINE)}
+    searches, contributions = {}, {}
+    before = column(blades["APC-SF"], analyses["APC-SF"])
+    torque = float(analyses["APC-SF"].steady.torque)
+
+    prob = thesis.build_problem(torque)
+    searches["thesis' problem"] = run_slsqp(prob, output / "thesis.sql")
+    if evolution:
+        evolved = thesis.build_problem(torque)
+        started = time.perf_counter()
+        thesis.optimise(evolved, evolution, 1, output)
+        history = read_history(evolved, output / "cases.sql")
+        searches["evolution"] = Search(history, time.perf_counter() - started, 0.0)
+        searches["and SLSQP"] = run_slsqp(evolved, output / "two_level.sql")
+    six = {name: prob.get_val(f"{name}_cp") for name in thesis.BOUNDS}
+    blades["six variables"] = thesis.naca_blade("six_variables", six, output)
+    for objective, other in (("tones", "total"), ("total", "tones")):
+        prob = free_form.build_problem(objective, torque, float(before[other] or 0.0))
+        start = {name: prob.get_val(f"{name}_cp") for name in free_form.BOUNDS}
+        name = f"quiet {objective}"
+        searches[name] = run_slsqp(prob, output / f"{objective}.sql")
+        blades[name] = free_form.write_blade(prob, f"quiet_{objective}", output)
+        best = {name: prob.get_val(f"{name}_cp") for name in free_form.BOUNDS}
+        contributions[name] = free_form.contributions(prob, start, best)
+    analyses |= {name: evaluate(blade) for name, blade in blades.items() if name not in analyses}
+    return Results(blades, analyses, searches, contributions)
+
+
+def draw(results: Results, output: Path) -> None:
+    """Write the figures."""
+    n = len(free_form.MICROPHONES)
+    runs = {name: (of.history.objective, of.history.violation)
+            for name, of in results.searches.items() if name != "evolution"}  # fmt: skip
+    elevations = np.array(thesis.DIRECTIVITY)
+    tones, total, bands = {}, {}, {}
+    for name, of in results.analyses.items():
+        heard = of.to_dict()["observers"]
+        tones[name] = oaspl_db(of.tones.total[n:])
+        total[name] = [one["oaspl_dba"] for one in heard[n:]]
+        bands[name] = [one["spl_db"] for one in heard[n + thesis.MICROPHONE_INDEX]["broadband"]]
+    for name, figure in (
+        ("history", optimisation_plots.history(runs, "objective, dB or dBA", TOLERANCE)),
+        ("blades", plots.blades(results.blades, [0.15, 0.5, 0.85])),
+        ("tones", directivity_plots.directivity(elevations, tones, label="tones")),
+        ("total", directivity_plots.directivity(elevations, total, label="A-weighted total")),
+        ("broadband", acoustic_plots.third_octaves(BANDS_HZ, bands)),
+    ):
+        figure.savefig(output / f"{name}.png")
+
+
+def main() -> None:
+    """Search, print the tables, write the files."""
+    parser = argparse.ArgumentParser(description=__doc__.split("\n\n")[0])
+    parser.add_argument("--quick", action="store_true", help="coarse meshes")
+    parser.add_argument("--evolution", type=int, default=0, metavar="N",
+                        help="designs of differential evolution before SLSQP")  # fmt: skip
+    parser.add_argument("--output", type=Path, default="results/gradient_design",
+                        help="folder, default %(default)s")  # fmt: skip
+    options = parser.parse_args()
+    output = options.output.absolute()
+    output.mkdir(parents=True, exist_ok=True)
+    if options.quick:
+        thesis.FIDELITY = QUICK
+
+    results = design(output, options.evolution)
+    print_comparison(ROWS, results.columns(), output / "gradient_design.csv")
+    print(markdown(cost(results.searches)))
+    for name, table in results.contributions.items():
+        print(f"{name}:")
+        print(markdown(table))
+    draw(results, output)
+    print(f"Table, figures and the blades as propeller files: {output}")
+
+
+if __name__ == "__main__":
+    main()

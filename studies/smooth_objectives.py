@@ -1,0 +1,193 @@
+"""Are the objectives smooth? Scans along random lines through the design space of a blade.
+
+An optimiser that follows derivatives stops at a jump or a kink, and one that does not exploits it.
+Lines join random designs within the bounds of `free_form_blade.py`, far wilder than any blade, at
+the trimmed rotation speed. Along each
+
+- the second differences are compared with their neighbours, and where they stand out most the line
+  is looked at again 2 and 8 times finer. They shrink with the step to the power 2 where the slope
+  is continuous, 1 at a kink and 0 at a jump: below 1.5 is reported as found;
+- the derivative that the model gives is compared with central differences in the middle.
+
+What the interpolation of the polars leaves, jumps of the curvature, is allowed: powers stay 2.
+"""
+
+import argparse
+import csv
+from collections.abc import Callable
+from pathlib import Path
+from typing import NamedTuple
+
+import free_form_blade as free_form
+import low_noise_design as thesis
+import numpy as np
+import openmdao.api as om
+from numpy.typing import NDArray
+from scipy.ndimage import median_filter
+
+from propmdao import optimisation_plots
+from propmdao.comparison import Rows, markdown
+from propmdao.fidelity import Fidelity
+
+Array = NDArray[np.float64]
+QUICK = Fidelity(n_chordwise=4, n_spanwise=12, n_contour=21, n_surface_span=20, n_harmonics=4)
+MICROPHONE = free_form.MICROPHONES.index(thesis.MICROPHONE)
+RESPONSES = {  # output: element, label
+    "spl_bpf_db": (MICROPHONE, "BPF tone, dB"),
+    "oaspl_db": (MICROPHONE, "tones, dB"),
+    "oaspl_total_dba": (MICROPHONE, "total, dBA"),
+    free_form.OBJECTIVES["tones"]: (0, "soft maximum, dB"),
+    free_form.OBJECTIVES["total"]: (0, "soft maximum, dBA"),
+    "torque": (0, "torque, N m"),
+    "rpm": (0, "rotation speed, rpm"),
+}
+SUSPECTS = 1  # places of each response that are looked at again
+KINK = 1.5  # power between that of a kink and that of a smooth function
+STEP = 2e-4  # of the central differences, in lengths of the line
+
+
+class Suspect(NamedTuple):
+    """A place where a response is least smooth: position on the line, power of the step."""
+
+    response: str
+    line: int
+    position: float
+    power: float
+
+
+class Line:
+    """The model along a line between two designs, position 0 to 1."""
+
+    def __init__(self, prob: om.Problem, start: Array, end: Array) -> None:
+        self._prob, self._start, self._along = prob, start, end - start
+
+    def __call__(self, position: float) -> Array:
+        """Responses (n_responses,), nan where the analysis fails."""
+        parts = np.split(self._start + position * self._along, len(free_form.BOUNDS))
+        for name, value in zip(free_form.BOUNDS, parts, strict=True):
+            self._prob.set_val(f"{name}_cp", value, units=free_form.units(name))
+        try:
+            self._prob.run_model()
+        except om.AnalysisError:
+            return np.full(len(RESPONSES), np.nan)
+        return np.array([self._prob.get_val(of).ravel()[k] for of, (k, _) in RESPONSES.items()])
+
+    def slope(self, position: float) -> Array:
+        """Derivatives (n_responses,) by the position, from the model's totals."""
+        self(position)
+        wrt = [f"{name}_cp" for name in free_form.BOUNDS]
+        totals = self._prob.compute_totals(list(RESPONSES), wrt, driver_scaling=False)
+        # Totals are by radians.
+        per_unit = [np.pi / 180.0 if free_form.units(name) else 1.0 for name in free_form.BOUNDS]
+        along = np.repeat(per_unit, free_form.AT.size) * self._along
+        return np.array([
+            np.concatenate([totals[of, name][k] for name in wrt]) @ along
+            for of, (k, _) in RESPONSES.items()
+        ])  # fmt: skip
+
+
+def random_line(prob: om.Problem, seed: int) -> Line:
+    """Line between two random designs within the bounds."""
+    lower, upper = (np.concatenate(side) for side in zip(*free_form.BOUNDS.values(), strict=True))
+    start, end = lower + (upper - lower) * np.random.default_rng(seed).random((2, lower.size))
+    return Line(prob, start, end)
+
+
+def suspects(values: Array) -> list[int]:
+    """Indices at which the second differences (n,) stand out most from their neighbours'."""
+    second = np.abs(np.diff(values, 2))
+    usual = median_filter(second, 15) + 1e-3 * np.max(second)
+    return [int(k) + 1 for k in np.argsort(-second / usual)[:SUSPECTS]]
+
+
+def power(function: Callable[[float], Array], at: float, step: float) -> Array:
+    """Power of the step with which second differences shrink within a step around a place."""
+    values = np.array([function(at + step * k / 16.0) for k in range(-16, 17)])
+
+    def largest(k: int) -> Array:
+        """Second difference over k sixteenths, wherever they begin: a kink lies between them."""
+        size: Array = np.abs(values[2 * k :] - 2.0 * values[k:-k] + values[: -2 * k]).max(axis=0)
+        return size
+
+    return np.log(largest(8) / largest(2)) / np.log(4.0)
+
+
+def scan(lines: list[Line], n: int) -> tuple[Array, list[Suspect]]:
+    """Values (n_lines, n, n_responses) and the places where they are least smooth."""
+    position = np.linspace(0.0, 1.0, n)
+    scans, found = [], []
+    for number, line in enumerate(lines):
+        values = np.array([line(at) for at in position])
+        scans.append(values)
+        at_response: dict[int, list[int]] = {}
+        for k, column in enumerate(values.T):
+            for index in suspects(column):
+                at_response.setdefault(index, []).append(k)
+        for index, responses in at_response.items():
+            powers = power(line, position[index], position[1])
+            found += [
+                Suspect([*RESPONSES][k], number, position[index], float(powers[k]))
+                for k in responses
+            ]
+    return np.array(scans), found
+
+
+def derivative_errors(lines: list[Line]) -> Array:
+    """Largest error of the totals against differences, over the largest slope: (n_responses,)."""
+    at = 0.5
+    exact = np.array([line.slope(at) for line in lines])
+    central = np.array([(line(at + STEP) - line(at - STEP)) / (2.0 * STEP) for line in lines])
+    return np.abs(exact - central).max(axis=0) / np.abs(exact).max(axis=0)
+
+
+def rows(values: Array, found: list[Suspect], errors: Array) -> Rows:
+    """Table by response, its head first."""
+    table: Rows = [("response", "range", "largest second difference", "least power",
+                    "derivative against differences", "kinks")]  # fmt: skip
+    for k, (name, (_, label)) in enumerate(RESPONSES.items()):
+        of, powers = values[..., k], [one.power for one in found if one.response == name]
+        second = np.nanmax(np.abs(np.diff(of, 2, axis=1)))
+        table.append(
+            (label, f"{np.nanmax(of) - np.nanmin(of):.3g}", f"{second:.1e}", f"{min(powers):.2f}",
+             f"{errors[k]:.0e}", f"{sum(p < KINK for p in powers)}")
+        )  # fmt: skip
+    return table
+
+
+def main() -> None:
+    """Scan, print the table, write the files."""
+    parser = argparse.ArgumentParser(description=__doc__.split("\n\n")[0])
+    parser.add_argument("--quick", action="store_true", help="coarse meshes")
+    parser.add_argument("--lines", type=int, default=3, help="random lines, default %(default)s")
+    parser.add_argument("--points", type=int, default=201, help="on each, default %(default)s")
+    parser.add_argument("--output", type=Path, default="results/smooth_objectives",
+                        help="folder, default %(default)s")  # fmt: skip
+    options = parser.parse_args()
+    output = options.output.absolute()
+    output.mkdir(parents=True, exist_ok=True)
+    if options.quick:
+        thesis.FIDELITY = QUICK
+
+    prob = free_form.build_problem("total", np.inf, np.inf)
+    lines = [random_line(prob, seed) for seed in range(options.lines)]
+    values, found = scan(lines, options.points)
+    print(markdown(rows(values, found, derivative_errors(lines))))
+    for name, line, position, of in sorted(found, key=lambda one: one.power)[:5]:
+        print(f"{name}: line {line} at {position:.4f}, power {of:.2f}")
+    print(f"{np.isnan(values).any(axis=2).sum()} of {values[..., 0].size} analyses failed.")
+    with (output / "smooth_objectives.csv").open("w", newline="", encoding="utf-8") as stream:
+        writer = csv.writer(stream)
+        writer.writerow(["line", "position", *RESPONSES])
+        for number, line_values in enumerate(values):
+            for at, row in zip(np.linspace(0.0, 1.0, options.points), line_values, strict=True):
+                writer.writerow([number, at, *row])
+    optimisation_plots.line_scans(
+        np.linspace(0.0, 1.0, options.points),
+        {name: values[..., k] for k, name in enumerate(RESPONSES)},
+        {name: label for name, (_, label) in RESPONSES.items()},
+    ).savefig(output / "scans.png")
+    print(f"Table and figure: {output}")
+
+
+if __name__ == "__main__":
+    main()
