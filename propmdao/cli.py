@@ -16,6 +16,7 @@ from typing import NoReturn
 import propmdao
 from propmdao.analyze_command import add_analyze
 from propmdao.export_command import add_export
+from propmdao.flyover_command import add_flyover
 from propmdao.json_output import print_json
 from propmdao.sweep_command import add_sweep
 from propmdao.wopwop_command import add_wopwop
@@ -88,6 +89,7 @@ def build_parser() -> argparse.ArgumentParser:
 
     add_analyze(commands)
     add_sweep(commands)
+    add_flyover(commands)
     add_export(commands)
     add_wopwop(commands)
     return parser

@@ -11,10 +11,10 @@ import numpy as np
 from propmdao.fidelity import Fidelity
 from propmdao.geometry.airfoil import chord_interpolation
 from propmdao.geometry.blade import Blade, span_interpolation
+from propmdao.geometry.meshes import propeller_surface
 from propmdao.geometry.section import section_shape
 from propmdao.geometry.stl import rotor_triangles, write_stl
 from propmdao.propeller import Propeller
-from propmdao.wopwop_export import blade_surface
 
 _SECTION_POINTS = 161
 
@@ -36,7 +36,8 @@ def export_stl(path: str | Path, propeller: Propeller, fidelity: Fidelity) -> in
     int
         Number of triangles.
     """
-    triangles = rotor_triangles(blade_surface(propeller, fidelity), propeller.n_blades)
+    nodes = propeller_surface(propeller, fidelity.n_contour, fidelity.n_surface_span)
+    triangles = rotor_triangles(nodes, propeller.n_blades)
     write_stl(path, triangles, f"propmdao {propeller.name}, metres")
     return len(triangles)
 

@@ -14,6 +14,7 @@ from propmdao.propeller import Propeller
 
 # What the numbers leave out stands below them, where it is read.
 INVISCID = "Inviscid lattice: no profile drag, so torque and power are low and eta is high."
+TRIPPED = {"none": "untripped", "light": "lightly tripped", "heavy": "heavily tripped"}
 TONES_ONLY = "Tones only: with broadband noise (--broadband) it is louder, above all in dBA."
 
 
@@ -72,9 +73,7 @@ def print_analyses(
     heard = [observer for analysis in analyses for observer in analysis["observers"]]
     if heard:
         console.print(_levels(analyses))
-        trip = {None: "", "none": ", blades untripped"}.get(
-            first["trip"], f", blades tripped ({first['trip']})"
-        )
+        trip = "" if first["trip"] is None else f", blades {TRIPPED[first['trip']]}"
         console.print(f"Levels: {surroundings}{trip}.", highlight=False)
     else:
         console.print("No observers: --arc RADIUS ELEVATION... adds their noise.\n")
@@ -89,6 +88,51 @@ def print_analyses(
     if heard and "broadband" not in heard[0]:
         console.print(TONES_ONLY)
     print_files(first)
+
+
+def print_flyover(propeller: Propeller, twist_offset_deg: float, result: dict[str, Any]) -> None:
+    """Print the levels of a flyover.
+
+    Parameters
+    ----------
+    propeller : Propeller
+        What flies.
+    twist_offset_deg : float
+        What was added to its blade angle [deg].
+    result : dict
+        With the keys of ``propmdao flyover --json``.
+    """
+    console = Console()
+    flight, history = result["flight"], result["history"]
+    console.print(
+        f"{propeller.name}: {result['rpm']:.1f} rpm, thrust {result['thrust']:.4g} N, speed"
+        f" {result['speed']:.4g} m/s, {flight['height']:g} m above the ground",
+        highlight=False,
+    )
+    if twist_offset_deg:
+        console.print(f"Twist offset {twist_offset_deg:+.4g} deg: not the geometry as described.")
+    if not result["converged"]:
+        console.print(f"NOT CONVERGED, do not use these numbers: {result['failure']}.")
+    if not result["viscous"]:
+        console.print(INVISCID)
+    table = _table()
+    for heading in ("", "loudest\ndBA", "SEL\ndBA", "EPNL\nEPNdB"):
+        table.add_column(heading, justify="right" if heading else "left")
+    for part, level in result["levels"].items():
+        shown = [_level(level[key], ".1f") for key in ("lamax_dba", "sel_dba")]
+        epnl = result["epnl"] if part == "total" else None
+        table.add_row(part, *shown, "" if epnl is None else f"{epnl:.1f}")
+    console.print(table)
+    if result["epnl_failure"]:
+        console.print(f"No EPNL: {result['epnl_failure']}.", highlight=False)
+    loudest = max(history, key=lambda step: float(step["total_dba"]))
+    console.print(
+        f"Loudest {loudest['time']:+.1f} s from overhead, heard over {loudest['distance']:.1f} m"
+        f" from elevation {loudest['elevation_deg']:+.0f} deg of the rotor plane; half seconds,"
+        f" {len(history)} of them. Blades {TRIPPED[result['trip']]}.",
+        highlight=False,
+    )
+    print_files(result)
 
 
 def print_files(result: dict[str, Any]) -> None:

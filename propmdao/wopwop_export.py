@@ -7,7 +7,6 @@ from pathlib import Path
 
 import jax.numpy as jnp
 import numpy as np
-from jax import Array
 from numpy.typing import ArrayLike
 
 from propmdao.acoustics.formulation1a import require_subsonic_tip
@@ -15,8 +14,7 @@ from propmdao.acoustics.motion import translation
 from propmdao.acoustics.reception import Observers
 from propmdao.acoustics.rotors import Rotor, equally_spaced
 from propmdao.fidelity import Fidelity
-from propmdao.geometry.blade import Blade, span_interpolation
-from propmdao.geometry.surface import surface_nodes, surface_span
+from propmdao.geometry.meshes import propeller_surface
 from propmdao.propeller import Propeller
 from propmdao.records import PointLoads
 from propmdao.wopwop.blade_files import blade_geometry
@@ -45,10 +43,9 @@ def write_blade(
     ValueError
         If the file cannot be written.
     """
-    geometry = dataclasses.replace(
-        blade_geometry(blade_surface(propeller, fidelity), None),
-        comment=f"propmdao {propeller.name}",
-    )
+    surface = propeller_surface(propeller, fidelity.n_contour, fidelity.n_surface_span)
+    geometry = blade_geometry(surface, None)
+    geometry = dataclasses.replace(geometry, comment=f"propmdao {propeller.name}")
     try:
         write_geometry(path, geometry)
     except OSError as error:
@@ -101,30 +98,10 @@ def write_propeller_case(
     write_case(
         folder,
         [Rotor(equally_spaced(propeller.n_blades), omega, loads=loads)],
-        [blade_surface(propeller, fidelity)],
+        [propeller_surface(propeller, fidelity.n_contour, fidelity.n_surface_span)],
         Observers(jnp.asarray(observers, float).reshape(-1, 3), jnp.asarray(velocity)),
         np.arange(n_times) * 2 * np.pi / (omega * n_times),
         density,
         sound_speed,
         (translation(velocity=velocity),),
     )
-
-
-def blade_surface(propeller: Propeller, fidelity: Fidelity) -> Array:
-    """Points of the skin of blade 1.
-
-    Parameters
-    ----------
-    propeller : Propeller
-        The described blade.
-    fidelity : Fidelity
-        Numbers of points of the surface.
-
-    Returns
-    -------
-    (n_contour, n_surface_span, 3) array
-        As `surface_nodes` orders them [m].
-    """
-    stations = propeller.r_over_R
-    span = span_interpolation(stations, surface_span(stations[0], fidelity.n_surface_span))
-    return surface_nodes(Blade.from_propeller(propeller), span, fidelity.n_contour)

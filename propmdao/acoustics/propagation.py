@@ -12,6 +12,8 @@ from jax.typing import ArrayLike
 from propmdao.acoustics.formulation1a import Tones
 from propmdao.records import Scalar, record
 
+_HALF_BAND = 10**0.05  # from the middle of a third octave to its edge
+
 
 @record
 class Air:
@@ -30,6 +32,30 @@ class Air:
     temperature: Scalar = 288.15
     relative_humidity: Scalar = 0.7
     pressure: Scalar = 101325.0
+
+
+def require_known_air(air: Air) -> None:
+    """Refuse air of which the standard does not say how it absorbs; not traceable by JAX.
+
+    Parameters
+    ----------
+    air : Air
+        Its state.
+
+    Raises
+    ------
+    ValueError
+        If it is outside -20 to 50 degrees Celsius, 0 to 100 % and 1 to 200 kPa.
+    """
+    for name, value, low, high, unit in (
+        ("temperature", air.temperature - 273.15, -20.0, 50.0, "degrees Celsius"),
+        ("relative humidity", 100 * air.relative_humidity, 0.0, 100.0, "%"),
+        ("pressure", air.pressure, 1e3, 200e3, "Pa"),
+    ):
+        if not low - 1e-9 <= float(value) <= high + 1e-9:
+            raise ValueError(
+                f"absorption: {name} must be within {low:g} ... {high:g} {unit}; it is {value:g}"
+            )
 
 
 def absorption_db_per_m(frequency_hz: ArrayLike, air: Air) -> Array:
@@ -187,6 +213,37 @@ def with_reflection(direct: Tones, reflected: Tones) -> Tones:
         direct.thickness + reflected.thickness,
         direct.loading + reflected.loading,
     )
+
+
+def bands_with_reflection(
+    direct: ArrayLike, reflected: ArrayLike, band_hz: ArrayLike, delay: ArrayLike
+) -> Array:
+    """Broadband noise over hard ground: the two ways together, as far as they interfere.
+
+    Parameters
+    ----------
+    direct, reflected : (..., n_bands) arrays
+        Mean squares in third octaves at the observers and at their `mirrored` positions [Pa^2].
+    band_hz : (n_bands,) or (..., n_bands) array
+        Mid-band frequencies [Hz].
+    delay : (...,) array
+        By which the reflected sound comes later [s].
+
+    Returns
+    -------
+    (..., n_bands) array
+        Mean squares [Pa^2].
+
+    Notes
+    -----
+    Noise of even density over a band, from a point: 6 dB where the delay is short beside the
+    period, 3 dB where it is long, waves in between.
+    """
+    one, other = jnp.asarray(direct, float), jnp.asarray(reflected, float)
+    f, late = jnp.asarray(band_hz, float), jnp.asarray(delay, float)[..., None]
+    width, middle = f * (_HALF_BAND - 1 / _HALF_BAND), 0.5 * f * (_HALF_BAND + 1 / _HALF_BAND)
+    together = jnp.cos(2 * jnp.pi * middle * late) * jnp.sinc(width * late)
+    return one + other + 2 * jnp.sqrt(one * other) * together
 
 
 def on_hard_ground(tones: Tones) -> Tones:

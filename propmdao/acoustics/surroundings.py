@@ -21,13 +21,14 @@ from propmdao.acoustics.propagation import (
     Air,
     absorb,
     absorb_tones,
+    bands_with_reflection,
     mirrored,
     on_hard_ground,
+    require_known_air,
     way_flying_along,
     with_reflection,
 )
 
-_HALF_BAND = 10**0.05  # from the middle of a third octave to its edge
 _ON_GROUND = 1e-9  # m: rounding of directions
 
 Floats = NDArray[np.float64]
@@ -64,16 +65,7 @@ class Surroundings:
         if isinstance(self.ground, float | int) and not 0.0 < self.ground < np.inf:
             raise ValueError(f"height above ground must be positive [m]; it is {self.ground:g}")
         if self.air is not None:
-            for name, value, low, high, unit in (
-                ("temperature", self.air.temperature - 273.15, -20.0, 50.0, "degrees Celsius"),
-                ("relative humidity", 100 * self.air.relative_humidity, 0.0, 100.0, "%"),
-                ("pressure", self.air.pressure, 1e3, 200e3, "Pa"),
-            ):
-                if not low - 1e-9 <= value <= high + 1e-9:
-                    raise ValueError(
-                        f"absorption: {name} must be within {low:g} ... {high:g} {unit};"
-                        f" it is {value:g}"
-                    )
+            require_known_air(self.air)
 
     def __str__(self) -> str:
         """Say it in one line."""
@@ -212,19 +204,15 @@ def bands_by_paths(
 
     Notes
     -----
-    Noise of even density over a band, from a point in the rotor's centre: the two ways interfere as
-    far as their difference is short beside the wave, 6 dB on the ground itself, 3 dB far above it.
+    Two ways interfere as those from a point in the rotor's centre: see `bands_with_reflection`.
     """
     x = jnp.asarray(paths)
     distance, doppler = way_flying_along(x, mach)
-    f, c = jnp.asarray(band_hz, float), sound_speed
+    f = jnp.asarray(band_hz, float)
     power = jnp.asarray(mean_square).reshape(*x.shape[:2], f.size)
     if surroundings.air is not None:
         power = absorb(power, f * doppler[..., None], distance, surroundings.air)
     if len(power) == 1:
         return power[0] if surroundings.ground is None else 4 * power[0]
-    late = (distance[1] - distance[0])[:, None] / c
-    width = f * (_HALF_BAND - 1 / _HALF_BAND)
-    middle = 0.5 * f * (_HALF_BAND + 1 / _HALF_BAND)
-    together = jnp.cos(2 * np.pi * middle * late) * jnp.sinc(width * late)
-    return power[0] + power[1] + 2 * jnp.sqrt(power[0] * power[1]) * together
+    delay = (distance[1] - distance[0]) / sound_speed
+    return bands_with_reflection(power[0], power[1], f, delay)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import numpy as np
 import numpy.typing as npt
 from jax import Array
@@ -10,6 +12,9 @@ from propmdao.geometry.blade import Blade, SpanInterpolation, span_interpolation
 from propmdao.geometry.lattice import lattice_nodes, lattice_span
 from propmdao.geometry.surface import surface_nodes, surface_span
 from propmdao.records import record
+
+if TYPE_CHECKING:
+    from propmdao.propeller import Propeller
 
 
 @record
@@ -75,3 +80,23 @@ def blade_meshes(
         lattice_nodes(blade, radii.lattice, n_chordwise),
         surface_nodes(blade, radii.surface, n_contour),
     )
+
+
+def propeller_surface(propeller: Propeller, n_contour: int, n_surface_span: int) -> Array:
+    """Nodes of the surface of a described propeller.
+
+    Parameters
+    ----------
+    propeller : Propeller
+        The described blade.
+    n_contour, n_surface_span : int
+        Points around the section and along the span.
+
+    Returns
+    -------
+    (n_contour, n_surface_span, 3) array
+        Points of the section contours of blade 1 [m].
+    """
+    stations = propeller.r_over_R
+    span = span_interpolation(stations, surface_span(stations[0], n_surface_span))
+    return surface_nodes(Blade.from_propeller(propeller), span, n_contour)
