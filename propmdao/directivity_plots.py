@@ -13,7 +13,7 @@ import numpy as np
 import numpy.typing as npt
 
 from propmdao.acoustic_plots import LEVEL, Measured, colored
-from propmdao.plot_style import GRID, page
+from propmdao.plot_style import half_circle, page
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -44,30 +44,17 @@ def directivity(
     Figure
         The figure; levels more than 40 dB below the loudest lie at its centre.
     """
-    figure = page(8.0, layout=None)
-    # Half a circle fills the middle half of its square; the legend stands beside it.
-    axes = cast("PolarAxes", figure.add_axes((-0.06, 0.06, 0.704, 0.88), projection="polar"))
     measured = measured or {}
-    loudest = [np.max(level) for level in levels.values()]
-    top = 5.0 * np.ceil(max([*loudest, *(np.max(known) for _, known in measured.values())]) / 5.0)
-    floor = top - 40.0
+    drawn = [*levels.values(), *(known for _, known in measured.values())]
+    loudest = max(float(np.max(level)) for level in drawn)
+    figure, axes = half_circle(loudest, 22.5, f"{label}, {LEVEL}")
+    floor = axes.get_ylim()[0]
     for name, color, level in colored(levels):
         angle = np.radians(np.asarray(elevation_deg, float))
         axes.plot(angle, np.maximum(level, floor), color=color, linewidth=2.0, label=name)
         if name in measured:
             at, known = (np.asarray(q, float) for q in measured[name])
             axes.plot(np.radians(at), known, "o", color=color, label=f"{name}, measured")
-    axes.set(thetamin=-90.0, thetamax=90.0)
-    axes.set_ylim(floor, top)
-    axes.set_yticks(np.arange(floor + 10.0, top + 1.0, 10.0))
-    named = {-90.0: "-90°, wake", 0.0: "0°, rotor plane", 90.0: "+90°, ahead"}
-    ticks = np.arange(-90.0, 91.0, 22.5)
-    axes.set_thetagrids(ticks, [named.get(tick, f"{tick:+.1f}°") for tick in ticks])
-    for text, tick in zip(axes.get_xticklabels(), ticks, strict=True):
-        text.set_horizontalalignment("left" if abs(tick) < 90.0 else "center")
-    axes.grid(**GRID)
-    # Along the straight edge, beside the levels of the circles.
-    figure.text(0.06, 0.27, f"{label}, {LEVEL}", rotation=90.0, va="center")
     figure.legend(loc="center right", bbox_to_anchor=(0.97, 0.8))
     return figure
 

@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
-from typing import Any, Literal
+from typing import TYPE_CHECKING, Any, Literal, cast
 
+import numpy as np
 import numpy.typing as npt
+
+if TYPE_CHECKING:
+    from matplotlib.projections.polar import PolarAxes
 
 try:
     from matplotlib.figure import Figure
@@ -58,3 +62,39 @@ def rows_of_axes(n: int) -> tuple[Figure, npt.NDArray[Any]]:
         axes.grid(**GRID)
         axes.set_axisbelow(True)
     return figure, rows
+
+
+def half_circle(loudest: float, step_deg: float, label: str) -> tuple[Figure, PolarAxes]:
+    """Make a figure of levels over elevation: half a circle, from the wake to ahead.
+
+    Parameters
+    ----------
+    loudest : float
+        Highest level to be drawn [dB]; 40 dB below it is the centre.
+    step_deg : float
+        Between the elevations that are named [deg].
+    label : str
+        Of the levels, with their unit.
+
+    Returns
+    -------
+    Figure, PolarAxes
+        The figure, with room for a legend on its right, and its axes: draw at angles in radians.
+    """
+    figure = page(8.0, layout=None)
+    # Half a circle fills the middle half of its square; the legend stands beside it.
+    axes = cast("PolarAxes", figure.add_axes((-0.06, 0.06, 0.704, 0.88), projection="polar"))
+    top = 5.0 * np.ceil(loudest / 5.0)
+    floor = top - 40.0
+    axes.set(thetamin=-90.0, thetamax=90.0)
+    axes.set_ylim(floor, top)
+    axes.set_yticks(np.arange(floor + 10.0, top + 1.0, 10.0))
+    named = {-90.0: "-90°, wake", 0.0: "0°, rotor plane", 90.0: "+90°, ahead"}
+    ticks = np.arange(-90.0, 91.0, step_deg)
+    axes.set_thetagrids(ticks, [named.get(tick, f"{tick:+g}°") for tick in ticks])
+    for text, tick in zip(axes.get_xticklabels(), ticks, strict=True):
+        text.set_horizontalalignment("left" if abs(tick) < 90.0 else "center")
+    axes.grid(**GRID)
+    # Along the straight edge, beside the levels of the circles.
+    figure.text(0.06, 0.27, label, rotation=90.0, va="center")
+    return figure, axes

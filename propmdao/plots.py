@@ -9,7 +9,7 @@ the others solid.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, Any, cast
+from typing import TYPE_CHECKING, Any
 
 import jax
 import numpy as np
@@ -24,6 +24,7 @@ from propmdao.plot_style import (
     GRID,
     LINE_STYLES,
     PART_COLORS,
+    half_circle,
     page,
     rows_of_axes,
 )
@@ -32,7 +33,6 @@ from propmdao.propeller import Propeller
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
-    from matplotlib.projections.polar import PolarAxes
 
 
 def convergence(
@@ -176,35 +176,21 @@ def directivity(
     Figure
         The figure; levels more than 40 dB below the loudest lie at its centre.
     """
-    figure = page(8.0, layout=None)
-    # Half a circle fills the middle half of its square; the legend stands beside it.
-    axes = cast("PolarAxes", figure.add_axes((-0.06, 0.06, 0.704, 0.88), projection="polar"))
     angle = np.radians(np.asarray(elevation_deg, float))
     levels = {
         (name, part): np.asarray(oaspl_db(amplitude))
         for name, heard in tones.items()
         for part, amplitude in _parts(heard).items()
     }
-    top = 5.0 * np.ceil(max(level.max() for level in levels.values()) / 5.0)
-    floor = top - 40.0
+    loudest = max(float(level.max()) for level in levels.values())
+    figure, axes = half_circle(loudest, 15.0, "OASPL, dB re 20 µPa")
+    floor, top = axes.get_ylim()
     styles = dict(zip(tones, LINE_STYLES, strict=False))
     for (name, part), level in levels.items():
         axes.plot(
             angle, np.maximum(level, floor), color=PART_COLORS[part], linestyle=styles[name],
             linewidth=2.0, label=f"{name}, {part}",
         )  # fmt: skip
-    axes.set_thetamin(-90.0)
-    axes.set_thetamax(90.0)
-    axes.set_ylim(floor, top)
-    axes.set_yticks(np.arange(floor + 10.0, top + 1.0, 10.0))
-    named = {-90.0: "-90°, wake", 0.0: "0°, rotor plane", 90.0: "+90°, ahead"}
-    ticks = np.arange(-90.0, 91.0, 15.0)
-    axes.set_thetagrids(ticks, [named.get(tick, f"{tick:+.0f}°") for tick in ticks])
-    for label, tick in zip(axes.get_xticklabels(), ticks, strict=True):
-        label.set_horizontalalignment("left" if abs(tick) < 90.0 else "center")
-    axes.grid(**GRID)
-    # Along the lower edge, beside the levels of the circles.
-    figure.text(0.06, 0.27, "OASPL, dB re 20 µPa", rotation=90.0, va="center")
     if mark_deg is not None:
         axes.plot(
             np.radians([mark_deg] * 2),

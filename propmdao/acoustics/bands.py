@@ -16,6 +16,7 @@ from scipy.interpolate import PchipInterpolator
 from propmdao.acoustics.levels import band_number
 
 _HALF_BAND = 10**0.05  # from the middle of a band to its edge (IEC 61260-1, base ten)
+_ROUNDS = 30  # each leaves of the error the share of a band that is in bins across its edges
 
 
 def tones_in_bands(frequency_hz: ArrayLike, mean_square: ArrayLike, center_hz: ArrayLike) -> Array:
@@ -173,7 +174,28 @@ def _spread(center: NDArray, wanted: NDArray, bins: NDArray, edges: NDArray) -> 
             break
         # Neighbours may rule a quiet band; it must not run away below them.
         log_density = np.maximum(log_density - np.clip(excess, -2.0, 2.0), floor - 25.0)
-    return np.asarray(energy * (wanted / held)[owner])
+    return np.asarray(energy * _gains(energy, edges, center, owner, wanted)[owner])
+
+
+def _gains(
+    energy: NDArray, edges: NDArray, center: NDArray, owner: NDArray, wanted: NDArray
+) -> NDArray:
+    """Factors of the bands' own bins by which bands hold what is wanted, shared bins divided."""
+    # held[b, o]: what band b holds of the bins that are mostly band o's.
+    held = np.diag(np.bincount(owner, energy, center.size))
+    limits = np.append(center / _HALF_BAND, center[-1] * _HALF_BAND)
+    position = (limits - edges[0]) / (edges[1] - edges[0])
+    shared = np.minimum(position.astype(int), energy.size - 1)
+    for upper, (k, below) in enumerate(zip(shared, position - shared, strict=True)):
+        own = owner[k]
+        other, part = (upper, 1 - below) if own < upper else (upper - 1, below)
+        held[own, own] -= part * energy[k]
+        if 0 <= other < center.size:
+            held[other, own] += part * energy[k]
+    gain = np.ones(center.size)
+    for _ in range(_ROUNDS):  # stays positive where a silent band has loud neighbours
+        gain *= wanted / np.maximum(held @ gain, np.finfo(float).tiny)
+    return gain
 
 
 def _energy(mean_square: NDArray, edges: NDArray, center: NDArray) -> NDArray:

@@ -70,6 +70,11 @@ class Reader:
         if found != wanted:
             raise self.error(f"{what} must be {wanted}; it is {found}")
 
+    def version(self) -> None:
+        """Refuse files of another version than 1.0."""
+        self.expect(1, "version")
+        self.expect(0, "second number of the version")
+
     def choose(self, options: dict[int, str], what: str) -> int:
         """Return the next integer if it is one of the options, refuse the file otherwise."""
         (found,) = self.ints(1)

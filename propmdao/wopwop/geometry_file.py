@@ -7,12 +7,10 @@ from pathlib import Path
 
 from propmdao.wopwop.binary import Reader, Writer
 from propmdao.wopwop.zones import (
-    CENTRED,
-    GRIDS,
-    TIMES,
     Zone,
     grid_of,
     read_header,
+    read_layout,
     read_zones,
     time_dependence,
     write_zones,
@@ -61,14 +59,11 @@ def read_geometry(path: str | Path) -> GeometryFile:
         If the file is not such a file, is truncated or too long.
     """
     file = Reader(Path(path))
-    file.expect(1, "version")
-    file.expect(0, "second number of the version")
+    file.version()
     units, comment = file.text(32), file.text(1024)
     file.expect(1, "file type (1 is a geometry)")
     n_zones = file.count("number of zones")
-    grid = file.choose(GRIDS, "grid")
-    kind = file.choose(TIMES, "time dependence of the geometry")
-    at_faces = file.choose(CENTRED, "place of the normals") == 2
+    grid, kind, at_faces = read_layout(file, "geometry")
     file.choose({1: "single"}, "precision")
     file.expect(0, "iblank flag")
     file.ints(1)

@@ -7,12 +7,10 @@ from pathlib import Path
 
 from propmdao.wopwop.binary import Reader, Writer
 from propmdao.wopwop.zones import (
-    CENTRED,
-    GRIDS,
-    TIMES,
     Zone,
     grid_of,
     read_header,
+    read_layout,
     read_zones,
     time_dependence,
     write_zones,
@@ -78,14 +76,11 @@ def read_loading(path: str | Path) -> LoadingFile:
         If the file is not such a file, is truncated or too long.
     """
     file = Reader(Path(path))
-    file.expect(1, "version")
-    file.expect(0, "second number of the version")
+    file.version()
     comment = file.text(1024)
     file.expect(2, "file type (2 is a loading)")
     n_geometry_zones = file.count("number of zones of the geometry")
-    grid = file.choose(GRIDS, "grid")
-    kind = file.choose(TIMES, "time dependence of the loading")
-    at_faces = file.choose(CENTRED, "place of the data") == 2
+    grid, kind, at_faces = read_layout(file, "loading")
     data = file.choose(DATA, "kind of the data")
     frame = file.choose(FRAMES, "frame of the loading vectors")
     file.choose({1: "single"}, "precision")

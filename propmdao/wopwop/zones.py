@@ -67,6 +67,33 @@ class ZoneHeader:
         return (len(self.faces),) if self.faces else tuple(max(n - 1, 1) for n in self.shape)
 
 
+def read_layout(file: Reader, contents: str) -> tuple[int, int, bool]:
+    """Read what the headers of both kinds of files say of their zones.
+
+    Parameters
+    ----------
+    file : Reader
+        At its grid.
+    contents : str
+        Of the file, to be named: "geometry" or "loading".
+
+    Returns
+    -------
+    grid, kind : int
+        Of `GRIDS`, of `TIMES`.
+    at_faces : bool
+        Whether values or normals belong to faces, not nodes.
+
+    Raises
+    ------
+    WopwopFileError
+        If they are not known.
+    """
+    grid = file.choose(GRIDS, "grid")
+    kind = file.choose(TIMES, f"time dependence of the {contents}")
+    return grid, kind, file.choose(CENTRED, f"place of the {contents}'s values") == 2
+
+
 def read_header(file: Reader, kind: int, grid: int, has_faces: bool) -> ZoneHeader:
     """Read the header of a zone.
 
