@@ -10,6 +10,7 @@ from propmdao.components.noise_objective_comp import NoiseObjectiveComp
 from propmdao.components.propeller_group import PropellerGroup
 from propmdao.components.rotation_speed_comp import RotationSpeedComp
 from propmdao.components.sweep_driver import SweepDriver
+from propmdao.components.trimmed_aerodynamics_comp import TrimmedAerodynamicsComp
 
 __all__ = [
     "AcousticsComp",
@@ -22,4 +23,5 @@ __all__ = [
     "PropellerGroup",
     "RotationSpeedComp",
     "SweepDriver",
+    "TrimmedAerodynamicsComp",
 ]

@@ -4,15 +4,18 @@ from __future__ import annotations
 
 from typing import Any
 
+import jax
 import jax.numpy as jnp
 import numpy as np
 import openmdao.api as om
 
 from propmdao.aerodynamics.coefficients import coefficients
+from propmdao.aerodynamics.known_root import steady_at
 from propmdao.aerodynamics.polars import SectionPolars
-from propmdao.aerodynamics.solution import failure
+from propmdao.aerodynamics.solution import SteadySolution, failure
 from propmdao.aerodynamics.steady import solve_steady
-from propmdao.components.jax_component import Arrays, JaxComponent
+from propmdao.components.jax_component import Arrays, evaluate
+from propmdao.components.root_component import RootComponent
 from propmdao.components.section_inputs import add_section_inputs, section_grid, with_inputs
 from propmdao.fidelity import Fidelity
 
@@ -23,7 +26,7 @@ def n_loads(fidelity: Fidelity) -> int:
     return nc * ns + nc * (ns + 1) + ns
 
 
-class AerodynamicsComp(JaxComponent):
+class AerodynamicsComp(RootComponent):
     """Steady vortex lattice with its helical wake, hover included.
 
     Inputs
@@ -36,9 +39,6 @@ class AerodynamicsComp(JaxComponent):
         Axial flight speed, 0 is hover, ``m/s``.
     density : float
         Air density, ``kg/m**3``.
-    thrust_guess : float
-        Thrust where it is nearly known, as after a trim: half of the work, the same results;
-        0 is no guess, ``N``.
     section_polars : (n_spanwise, 3, n_re, n_alpha) array
         With option `polars`: of `GeometryComp`.
     sound_speed : float
@@ -92,10 +92,9 @@ class AerodynamicsComp(JaxComponent):
         fidelity = self.options["fidelity"]
         nc, ns = fidelity.n_chordwise, fidelity.n_spanwise
         self.add_input("lattice_nodes", shape=(nc + 1, ns + 1, 3), units="m")
-        self.add_input("rpm", val=4000.0, units="rpm")
+        self._add_rotation_speed()
         self.add_input("speed", val=0.0, units="m/s")
         self.add_input("density", val=1.225, units="kg/m**3")
-        self.add_input("thrust_guess", val=0.0, units="N", desc="Saves work; 0 is no guess.")
         self.add_output("thrust", units="N", desc="Of all blades.")
         self.add_output("torque", units="N*m", desc="Of all blades.")
         self.add_output("shaft_power", units="W", desc="Of all blades.")
@@ -113,36 +112,68 @@ class AerodynamicsComp(JaxComponent):
         if polars is not None:
             add_section_inputs(self, polars, ns)
             grid = section_grid(polars, self.options["stall_delay"])
-        self.function = _steady
+        self.function, self.state, self.residual = _at_root, "induced_velocity", "residual"
         self.static = self.options["n_blades"]
         self.constants = jnp.asarray(self.options["radius"]), grid
+
+    def _add_rotation_speed(self) -> None:
+        self.add_input("rpm", val=4000.0, units="rpm")
+
+    def solve(self, inputs: Arrays) -> Any:
+        return evaluate(_steady, self.static, self.constants, inputs)
 
     def check(self, inputs: Any, values: Any) -> None:
         reason = failure(values["solution"])
         if reason:
             raise om.AnalysisError(
-                f"{reason}, at {inputs['rpm'][0]:g} rpm and {inputs['speed'][0]:g} m/s"
+                f"{reason}, at {values['rpm'][0]:g} rpm and {inputs['speed'][0]:g} m/s"
             )
 
 
 def _steady(inputs: Arrays, constants: Any, static: int) -> Arrays:
-    n_blades, (radius, grid) = static, constants
-    rpm, speed, density, thrust_guess = (
-        inputs[name][0] for name in ("rpm", "speed", "density", "thrust_guess")
-    )
-    omega = rpm * (np.pi / 30.0)
-    solution = solve_steady(
-        inputs["lattice_nodes"],
-        n_blades,
-        radius,
-        omega,
-        speed,
-        density,
-        with_inputs(grid, inputs),
-        thrust_guess=thrust_guess,
-    )
+    solution = solve_steady(*_arguments(inputs, constants, static))
+    found = {"induced_velocity": solution.induced_velocity[None], "solution": solution}
+    return {**loads(solution, inputs["rpm"][0], inputs, constants), **found}
+
+
+def _at_root(inputs: Arrays, constants: Any, static: int) -> Arrays:
+    w = inputs["induced_velocity"][0]
+    solution, residual = steady_at(w, *_arguments(inputs, constants, static))
+    return {
+        **loads(solution, inputs["rpm"][0], inputs, constants),
+        "residual": residual[None],
+    }
+
+
+def _arguments(inputs: Arrays, constants: Any, n_blades: int) -> tuple[Any, ...]:
+    rpm, speed, density = (inputs[name][0] for name in ("rpm", "speed", "density"))
+    radius, grid = constants
+    operating = radius, rpm * (np.pi / 30.0), speed, density
+    return inputs["lattice_nodes"], n_blades, *operating, with_inputs(grid, inputs)
+
+
+def loads(solution: SteadySolution, rpm: jax.Array, inputs: Arrays, constants: Any) -> Arrays:
+    """Outputs of the component.
+
+    Parameters
+    ----------
+    solution : SteadySolution
+        Loads.
+    rpm : float
+        Rotation speed.
+    inputs, constants
+        Of the component's function.
+
+    Returns
+    -------
+    dict of arrays
+        By name, and the rotation speed.
+    """
+    omega, radius = rpm * (np.pi / 30.0), constants[0]
+    speed, density = inputs["speed"][0], inputs["density"][0]
     of = coefficients(solution.thrust, solution.torque, omega, speed, density, 2.0 * radius)
     return {
+        "rpm": rpm[None],
         "thrust": solution.thrust[None],
         "torque": solution.torque[None],
         "shaft_power": (solution.torque * omega)[None],
@@ -156,5 +187,4 @@ def _steady(inputs: Arrays, constants: Any, static: int) -> Arrays:
         "load_force": solution.point_loads.force,
         "section_speed": solution.sections.relative_speed,
         "section_lift_coefficient": solution.sections.lift_coefficient,
-        "solution": solution,
     }

@@ -2,16 +2,19 @@
 
 from __future__ import annotations
 
+from collections import deque
 from collections.abc import Callable, Hashable, Mapping
 from functools import partial
-from typing import Any
+from typing import Any, Generic, Protocol, TypeVar
 
 import jax
 import numpy as np
 import openmdao.api as om
 
-Arrays = dict[str, jax.Array]
+Arrays = dict[str, Any]  # of NumPy or JAX, by variable name
 Function = Callable[[Arrays, Any, Any], Arrays]
+Shapes = dict[str, tuple[int, ...]]
+Result = TypeVar("Result")
 
 
 class JaxComponent(om.ExplicitComponent):
@@ -23,19 +26,87 @@ class JaxComponent(om.ExplicitComponent):
       arrays by variable name, so that compiled code is shared by all instances;
     - ``constants``: arrays (any pytree) that are no inputs;
     - ``static``: what is hashable and fixed at compile time.
+
+    Every output always takes part in derivatives, if only with zeros: compiling for each
+    combination that OpenMDAO asks for would take far longer than the products.
     """
 
     function: Function
     constants: Any = None
     static: Hashable = None
 
+    def __init__(self, **options: Any) -> None:
+        super().__init__(**options)
+        self._linearised = LastPoints(self.derivatives_at)
+
     def compute(self, inputs: Any, outputs: Any) -> None:
-        values = evaluate(self.function, self.static, self.constants, arrays(inputs))
-        self.check(inputs, values)
+        values = self.values_at(arrays(inputs))
         for name in outputs:
             outputs[name] = values[name]
 
-    def check(self, inputs: Any, values: Mapping[str, jax.Array]) -> None:
+    def compute_jacvec_product(self, inputs: Any, d_inputs: Any, d_outputs: Any, mode: str) -> None:
+        at = arrays(inputs)
+        derivatives = self._linearised(at)
+        if mode == "fwd":
+            shapes: Shapes = {name: value.shape for name, value in at.items()}
+            products = derivatives.forward(seeds_of(d_inputs, shapes))
+            for name in d_outputs:
+                d_outputs[name] += products[name]
+        else:
+            products = derivatives.reverse(seeds_of(d_outputs, self.output_shapes()))
+            for name in d_inputs:
+                d_inputs[name] += products[name]
+
+    def output_shapes(self) -> Shapes:
+        """Shapes of the outputs that `function` returns.
+
+        Returns
+        -------
+        dict of tuples of int
+            By name.
+        """
+        outputs = self.get_io_metadata(iotypes="output", metadata_keys=["shape"])
+        return {name: meta["shape"] for name, meta in outputs.items()}
+
+    def values_at(self, inputs: Arrays) -> Mapping[str, Any]:
+        """Evaluate the function and check what it returns.
+
+        Parameters
+        ----------
+        inputs : dict of arrays
+            Inputs by name.
+
+        Returns
+        -------
+        mapping
+            Outputs by name, and whatever else the function returns.
+
+        Raises
+        ------
+        om.AnalysisError
+            As `check` does.
+        """
+        values = evaluate(self.function, self.static, self.constants, inputs)
+        self.check(inputs, values)
+        return values
+
+    def derivatives_at(self, inputs: Arrays) -> Derivatives:
+        """Derivatives of the outputs by the inputs.
+
+        Parameters
+        ----------
+        inputs : dict of arrays
+            Inputs by name.
+
+        Returns
+        -------
+        Derivatives
+            For any number of products at these inputs.
+        """
+        outputs = tuple(self.output_shapes())
+        return FunctionDerivatives(self.function, self.static, self.constants, inputs, outputs)
+
+    def check(self, inputs: Any, values: Mapping[str, Any]) -> None:
         """Raise ``om.AnalysisError`` where the values have no meaning; by default never.
 
         Parameters
@@ -46,27 +117,49 @@ class JaxComponent(om.ExplicitComponent):
             What ``function`` returned: the outputs, and whatever the check needs beside them.
         """
 
-    def compute_jacvec_product(self, inputs: Any, d_inputs: Any, d_outputs: Any, mode: str) -> None:
-        # Every output always takes part, if only with zeros: compiling for each combination that
-        # OpenMDAO asks for would take far longer than the products.
-        outputs = self.get_io_metadata(iotypes="output", metadata_keys=["shape"])
-        at = self.function, self.static, self.constants, arrays(inputs)
-        if mode == "fwd":
-            seeds = {
-                n: np.array(d_inputs[n]) if n in d_inputs else np.zeros_like(inputs[n])
-                for n in inputs
-            }
-            products = forward(*at, tuple(outputs), seeds)
-            for name in d_outputs:
-                d_outputs[name] += products[name]
-        else:
-            seeds = {
-                name: np.array(d_outputs[name]) if name in d_outputs else np.zeros(meta["shape"])
-                for name, meta in outputs.items()
-            }
-            products = reverse(*at, seeds)
-            for name in d_inputs:
-                d_inputs[name] += products[name]
+
+class Derivatives(Protocol):
+    """Derivatives at one point, as products by seeds that are dictionaries of all variables."""
+
+    def forward(self, seeds: Arrays) -> Mapping[str, Any]:
+        """Return derivatives of the outputs along the direction `seeds`, one for each input."""
+
+    def reverse(self, seeds: Arrays) -> Mapping[str, Any]:
+        """Return derivatives by every input of the sum of the outputs weighted with `seeds`."""
+
+
+class FunctionDerivatives:
+    """Derivatives of a function, linearised once for all reverse products.
+
+    Parameters
+    ----------
+    function, static, constants, inputs
+        As `evaluate` takes them.
+    outputs : tuple of str
+        Which of its results are differentiated.
+    """
+
+    def __init__(
+        self,
+        function: Function,
+        static: Hashable,
+        constants: Any,
+        inputs: Arrays,
+        outputs: tuple[str, ...],
+    ) -> None:
+        self._at = function, static, outputs, constants, inputs
+        self._pull: Any = None
+
+    def forward(self, seeds: Arrays) -> Mapping[str, Any]:
+        """Return derivatives of the outputs along the direction `seeds`, one for each input."""
+        products: Arrays = _push(*self._at, seeds)
+        return products
+
+    def reverse(self, seeds: Arrays) -> Mapping[str, Any]:
+        """Return derivatives by every input of the sum of the outputs weighted with `seeds`."""
+        if self._pull is None:
+            self._pull = _linearise(*self._at)
+        return _pull_back(self._pull, seeds)
 
 
 def arrays(vector: Any) -> dict[str, Any]:
@@ -85,13 +178,104 @@ def arrays(vector: Any) -> dict[str, Any]:
     return {name: np.array(vector[name]) for name in vector}
 
 
+def seeds_of(given: Any, shapes: Shapes) -> dict[str, Any]:
+    """Seeds of all variables, zero where OpenMDAO gives none.
+
+    Parameters
+    ----------
+    given : mapping
+        OpenMDAO vector of the seeds.
+    shapes : dict of tuples of int
+        Of all variables by name.
+
+    Returns
+    -------
+    dict of arrays
+        Seeds by name.
+    """
+    return {
+        name: np.array(given[name]) if name in given else np.zeros(shape)
+        for name, shape in shapes.items()
+    }
+
+
+class LastPoints(Generic[Result]):
+    """A function of a point that remembers its results for the last points it was asked for.
+
+    Points are the same where all values are equal to the last bit: nothing stale is ever returned.
+
+    Parameters
+    ----------
+    function : callable
+        Of a dictionary of arrays.
+    n : int
+        Number of points that are remembered.
+    """
+
+    def __init__(self, function: Callable[[Arrays], Result], n: int = 1) -> None:
+        self._function = function
+        self._results: deque[tuple[Arrays, Result]] = deque(maxlen=n)
+
+    def __call__(self, inputs: Arrays) -> Result:
+        """Return the function's result, computed where the inputs are not those of a last point."""
+        for point, result in self._results:
+            if _same(point, inputs):
+                return result
+        result = self._function(inputs)
+        self._results.append((inputs, result))
+        return result
+
+
+def _same(a: Arrays, b: Arrays) -> bool:
+    # The small ones, as the speed, first: they tell points of one mesh apart.
+    return all(np.array_equal(a[name], b[name]) for name in sorted(a, key=lambda n: a[n].size))
+
+
 @partial(jax.jit, static_argnums=(0, 1))
 def evaluate(function: Function, static: Hashable, constants: Any, inputs: Arrays) -> Arrays:
     """Return ``function(inputs, constants, static)``, compiled."""
     return function(inputs, constants, static)
 
 
-@partial(jax.jit, static_argnums=(0, 1, 4))
+def _chosen(
+    function: Function, static: Hashable, outputs: tuple[str, ...], constants: Any
+) -> Callable[[Arrays], Arrays]:
+    def chosen(inputs: Arrays) -> Arrays:
+        values = function(inputs, constants, static)
+        return {name: values[name] for name in outputs}
+
+    return chosen
+
+
+@partial(jax.jit, static_argnums=(0, 1, 2))
+def _push(
+    function: Function,
+    static: Hashable,
+    outputs: tuple[str, ...],
+    constants: Any,
+    inputs: Arrays,
+    seeds: Arrays,
+) -> Arrays:
+    return jax.jvp(_chosen(function, static, outputs, constants), (inputs,), (seeds,))[1]
+
+
+@partial(jax.jit, static_argnums=(0, 1, 2))
+def _linearise(
+    function: Function,
+    static: Hashable,
+    outputs: tuple[str, ...],
+    constants: Any,
+    inputs: Arrays,
+) -> Any:
+    return jax.vjp(_chosen(function, static, outputs, constants), inputs)[1]
+
+
+@jax.jit
+def _pull_back(pull: Any, seeds: Arrays) -> Arrays:
+    products: Arrays = pull(seeds)[0]
+    return products
+
+
 def forward(
     function: Function,
     static: Hashable,
@@ -101,22 +285,12 @@ def forward(
     seeds: Arrays,
 ) -> Arrays:
     """Return derivatives of the outputs `of` along the direction `seeds`, one for each input."""
-
-    def chosen(x: Arrays) -> Arrays:
-        values = function(x, constants, static)
-        return {name: values[name] for name in of}
-
-    return jax.jvp(chosen, (inputs,), (seeds,))[1]
+    return dict(FunctionDerivatives(function, static, constants, inputs, of).forward(seeds))
 
 
-@partial(jax.jit, static_argnums=(0, 1))
 def reverse(
     function: Function, static: Hashable, constants: Any, inputs: Arrays, seeds: Arrays
 ) -> Arrays:
     """Return derivatives by every input of the sum of the outputs weighted with `seeds`."""
-
-    def chosen(x: Arrays) -> Arrays:
-        values = function(x, constants, static)
-        return {name: values[name] for name in seeds}
-
-    return jax.vjp(chosen, inputs)[1](seeds)[0]
+    of = tuple(seeds)
+    return dict(FunctionDerivatives(function, static, constants, inputs, of).reverse(seeds))

@@ -13,10 +13,12 @@ from propmdao.components.acoustics_comp import AcousticsComp
 from propmdao.components.aerodynamics_comp import AerodynamicsComp, n_loads
 from propmdao.components.broadband_comp import BroadbandComp
 from propmdao.components.geometry_comp import CAMBER_INPUTS, GeometryComp, blade_distributions
-from propmdao.components.rotation_speed_comp import METHODS, RotationSpeedComp
+from propmdao.components.rotation_speed_comp import RotationSpeedComp
+from propmdao.components.trimmed_aerodynamics_comp import TrimmedAerodynamicsComp
 from propmdao.fidelity import Fidelity
 from propmdao.propeller import Propeller
 
+TRIM_METHODS = ("solve", "two_point")
 SPLINE_METHODS = ("slinear", "akima", "cubic")
 
 
@@ -69,7 +71,8 @@ broadband_mean_square_pressure, band_frequency
         Where the rotation speed is looked for [rpm]; by default where the tip turns at 0.01 to 0.9
         of the standard speed of sound.
     trim_method : str
-        ``"solve"`` or ``"two_point"``, see `RotationSpeedComp`.
+        ``"solve"``: the thrust is the required one (`TrimmedAerodynamicsComp`). ``"two_point"``:
+        the rule of the thesis, which misses it by some per cent (`RotationSpeedComp`).
     design_distributions : dict
         Distribution name -> r/R of its control points, from the first station to the tip.
     spline_method : str
@@ -95,7 +98,7 @@ broadband_mean_square_pressure, band_frequency
         declare("fidelity", Fidelity(), types=Fidelity, desc="Panels and harmonics.")
         declare("trim", "thrust", values=("thrust", "rpm"), desc="What is given.")
         declare("rpm_bounds", None, types=tuple, allow_none=True, desc="Lowest and highest rpm.")
-        declare("trim_method", "solve", values=METHODS, desc="How the rpm is found.")
+        declare("trim_method", "solve", values=TRIM_METHODS, desc="How the rpm is found.")
         declare("design_distributions", {}, types=dict, desc="Name -> r/R of control points.")
         declare("spline_method", "slinear", values=SPLINE_METHODS, desc="Through control points.")
         declare("viscous", True, types=bool, desc="Hold the lattice to section polars.")
@@ -127,35 +130,17 @@ broadband_mean_square_pressure, band_frequency
             "polars": polars,
             "stall_delay": options["stall_delay"],
         }
-        trimmed = options["trim"] == "thrust"
-        if trimmed:
-            bounds = options["rpm_bounds"]
-            if bounds is None:
-                bounds = tuple(
-                    tip_speed / rotor["radius"] * 30.0 / np.pi
-                    for tip_speed in (LEAST_TIP_SPEED, LARGEST_TIP_SPEED)
-                )
-            self.add_subsystem(
-                "rotation_speed",
-                RotationSpeedComp(**rotor, rpm_bounds=bounds, method=options["trim_method"]),
-                promotes=["*"],
+        if options["trim"] == "thrust":
+            rotor["rpm_bounds"] = options["rpm_bounds"] or tuple(
+                tip_speed / rotor["radius"] * 30.0 / np.pi
+                for tip_speed in (LEAST_TIP_SPEED, LARGEST_TIP_SPEED)
             )
-        self.add_subsystem(
-            "aerodynamics",
-            AerodynamicsComp(**rotor),
-            promotes_inputs=[
-                "lattice_nodes",
-                "rpm",
-                "speed",
-                "density",
-                *([] if polars is None else ["section_polars", "sound_speed"]),
-                ("thrust_guess", "thrust_required") if trimmed else "thrust_guess",
-            ],
-            promotes_outputs=["*"],
-        )
-        if trimmed:
-            # The thrust that the trim reaches is also where the loads start looking.
-            self.set_input_defaults("thrust_required", 1.0, units="N")
+        trimmed = options["trim"] == "thrust" and options["trim_method"] == "solve"
+        if options["trim"] == "thrust" and not trimmed:
+            self.add_subsystem("rotation_speed", RotationSpeedComp(**rotor), promotes=["*"])
+            del rotor["rpm_bounds"]
+        aerodynamics = TrimmedAerodynamicsComp if trimmed else AerodynamicsComp
+        self.add_subsystem("aerodynamics", aerodynamics(**rotor), promotes=["*"])
         self.set_input_defaults("sound_speed", 340.294, units="m/s")
         self.add_subsystem(
             "acoustics",

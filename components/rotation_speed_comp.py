@@ -1,4 +1,4 @@
-"""Rotation speed at which a blade gives the thrust required."""
+"""Rotation speed for a thrust by the rule of the thesis."""
 
 from __future__ import annotations
 
@@ -9,22 +9,20 @@ import numpy as np
 import openmdao.api as om
 
 from propmdao.aerodynamics.polars import SectionPolars
-from propmdao.aerodynamics.trim import (
-    TrimError,
-    rotation_speed_by_interpolation,
-    rotation_speed_for_thrust,
-    solve_rotation_speed,
-)
-from propmdao.components.jax_component import Arrays, arrays, evaluate, reverse
+from propmdao.aerodynamics.trim import rotation_speed_by_interpolation
+from propmdao.components.jax_component import Arrays, JaxComponent
 from propmdao.components.section_inputs import add_section_inputs, section_grid, with_inputs
+from propmdao.components.trimmed_aerodynamics_comp import require_bounds
 from propmdao.fidelity import Fidelity
 
-METHODS = ("solve", "two_point")
 _RAD_PER_S = np.pi / 30.0
 
 
-class RotationSpeedComp(om.ExplicitComponent):
-    """Trim to a thrust, converged from any blade inside the bounds.
+class RotationSpeedComp(JaxComponent):
+    """Rotation speed at which the thrust, linear between two rotation speeds, is the required one.
+
+    The rule of the thesis. It misses the thrust required by some per cent and is there to show by
+    how much; `TrimmedAerodynamicsComp` does not.
 
     Inputs
     ------
@@ -53,11 +51,7 @@ class RotationSpeedComp(om.ExplicitComponent):
     fidelity : Fidelity
         Numbers of panels.
     rpm_bounds : (float, float)
-        Lowest and highest rotation speed [rpm].
-    method : str
-        ``"solve"``: the thrust is the required one. ``"two_point"``: the thrust is computed at the
-        two bounds and taken as linear in between, the rule of the thesis; it misses the thrust
-        required by some per cent and is there to show by how much.
+        The two rotation speeds at which the thrust is computed [rpm].
     polars : SectionPolars or None
         Whose Reynolds numbers and angles `section_polars` has; None for inviscid flow.
     stall_delay : bool
@@ -66,7 +60,7 @@ class RotationSpeedComp(om.ExplicitComponent):
     Raises
     ------
     om.AnalysisError
-        When the thrust is out of reach between the bounds, with the thrust at both.
+        When the rotation speed is not between the two.
     """
 
     def initialize(self) -> None:
@@ -74,14 +68,12 @@ class RotationSpeedComp(om.ExplicitComponent):
         self.options.declare("radius", types=float, desc="Tip radius [m].")
         self.options.declare("fidelity", Fidelity(), types=Fidelity, desc="Numbers of panels.")
         self.options.declare("rpm_bounds", types=tuple, desc="Lowest and highest rpm.")
-        self.options.declare("method", "solve", values=METHODS, desc="How the rpm is found.")
         self.options.declare("polars", None, types=SectionPolars, allow_none=True, desc="Or None.")
         self.options.declare("stall_delay", True, types=bool, desc="Of rotating sections.")
 
     def setup(self) -> None:
+        require_bounds(self.options["rpm_bounds"])
         low, high = self.options["rpm_bounds"]
-        if not 0.0 < low < high:
-            raise ValueError(f"rpm_bounds must be positive and rising; they are {low:g}, {high:g}")
         fidelity = self.options["fidelity"]
         nodes = (fidelity.n_chordwise + 1, fidelity.n_spanwise + 1, 3)
         self.add_input("lattice_nodes", shape=nodes, units="m")
@@ -93,38 +85,12 @@ class RotationSpeedComp(om.ExplicitComponent):
             add_section_inputs(self, polars, fidelity.n_spanwise)
             grid = section_grid(polars, self.options["stall_delay"])
         self.add_output("rpm", val=np.sqrt(low * high), units="rpm")
-
-        self.declare_partials("rpm", "*")
         bounds = jnp.array([self.options["radius"], low * _RAD_PER_S, high * _RAD_PER_S])
+        self.function = _interpolated
+        self.static = self.options["n_blades"]
         self.constants = bounds, grid
 
-    def compute(self, inputs: Any, outputs: Any) -> None:
-        if self.options["method"] == "solve":
-            outputs["rpm"] = self._solve(arrays(inputs)) / _RAD_PER_S
-        else:
-            outputs["rpm"] = self._interpolate(arrays(inputs))
-
-    def compute_partials(self, inputs: Any, partials: Any) -> None:
-        # One output: a single reverse product is the whole Jacobian, for any number of responses.
-        function = _solved if self.options["method"] == "solve" else _interpolated
-        at = self.options["n_blades"], self.constants, arrays(inputs)
-        for name, gradient in reverse(function, *at, {"rpm": np.ones(1)}).items():
-            partials["rpm", name] = gradient.reshape(1, -1)
-
-    def _solve(self, inputs: Arrays) -> Any:
-        *operating, low, high, sections = _arguments(
-            inputs, self.constants, self.options["n_blades"]
-        )
-        nodes, n_blades, radius, speed, density, thrust = operating
-        try:
-            return rotation_speed_for_thrust(
-                nodes, n_blades, radius, speed, density, thrust, (low, high), sections
-            )
-        except TrimError as error:
-            raise om.AnalysisError(str(error)) from error
-
-    def _interpolate(self, inputs: Arrays) -> Any:
-        values = evaluate(_interpolated, self.options["n_blades"], self.constants, inputs)
+    def check(self, inputs: Any, values: Any) -> None:
         low, high = self.options["rpm_bounds"]
         (rpm,) = values["rpm"]
         if not low <= rpm <= high:
@@ -132,21 +98,13 @@ class RotationSpeedComp(om.ExplicitComponent):
                 f"thrust {inputs['thrust_required'][0]:g} N needs {rpm:g} rpm by linear "
                 f"interpolation, outside {low:g}..{high:g} rpm"
             )
-        return rpm
-
-
-def _arguments(inputs: Arrays, constants: Any, n_blades: int) -> tuple[Any, ...]:
-    scalars = (inputs[name][0] for name in ("speed", "density", "thrust_required"))
-    (radius, low, high), grid = constants
-    sections = with_inputs(grid, inputs)
-    return inputs["lattice_nodes"], n_blades, radius, *scalars, low, high, sections
-
-
-def _solved(inputs: Arrays, constants: Any, static: int) -> Arrays:
-    omega, _ = solve_rotation_speed(*_arguments(inputs, constants, static))
-    return {"rpm": omega[None] / _RAD_PER_S}
 
 
 def _interpolated(inputs: Arrays, constants: Any, static: int) -> Arrays:
-    omega = rotation_speed_by_interpolation(*_arguments(inputs, constants, static))
+    speed, density, thrust = (inputs[name][0] for name in ("speed", "density", "thrust_required"))
+    (radius, low, high), grid = constants
+    sections = with_inputs(grid, inputs)
+    omega = rotation_speed_by_interpolation(
+        inputs["lattice_nodes"], static, radius, speed, density, thrust, low, high, sections
+    )
     return {"rpm": omega[None] / _RAD_PER_S}

@@ -70,6 +70,41 @@ class Flow:
 _Params = tuple[Flow, Array, Array]  # with the wake's ages and the thrust guessed
 
 
+def flow_at(
+    nodes: Array,
+    n_blades: int,
+    radius: Scalar,
+    rotation_speed: Scalar,
+    speed: Scalar,
+    density: Scalar,
+    sections: ViscousSections | None,
+) -> Flow:
+    """Lattice at an operating point.
+
+    Parameters
+    ----------
+    nodes : (nc + 1, ns + 1, 3) array
+        Corner points of the lattice of blade 1 [m].
+    n_blades : int
+        Number of equally spaced blades.
+    radius, rotation_speed, speed, density, sections
+        As in `Flow`.
+
+    Returns
+    -------
+    Flow
+        With the geometry of the lattice.
+    """
+    return Flow(
+        lattice=lattice_geometry(nodes, n_blades, radius),
+        radius=jnp.asarray(radius, float),
+        rotation_speed=jnp.asarray(rotation_speed, float),
+        speed=jnp.asarray(speed, float),
+        density=jnp.asarray(density, float),
+        sections=sections,
+    )
+
+
 def induced_velocity(flow: Flow, thrust: Scalar) -> Array:
     """Induced velocity at the disk by momentum theory.
 
@@ -163,14 +198,10 @@ def solve_steady(
     SteadySolution
         Loads, exactly differentiable in every argument but `n_blades` and the guess.
     """
-    turning = rotation_speed > 0.0
-    flow = Flow(
-        lattice=lattice_geometry(nodes, n_blades, radius),
-        radius=jnp.asarray(radius, float),
-        rotation_speed=jnp.where(turning, rotation_speed, 1.0),
-        speed=jnp.asarray(speed, float),
-        density=jnp.asarray(density, float),
-        sections=sections,
+    turning = jnp.asarray(rotation_speed > 0.0)
+    # Where nothing turns, the flow of 1 rad/s stands in, for the shapes.
+    flow = flow_at(
+        nodes, n_blades, radius, jnp.where(turning, rotation_speed, 1.0), speed, density, sections
     )
     ages, thrust_guess = jnp.asarray(wake_ages), jnp.asarray(thrust_guess, float)
 
@@ -200,15 +231,7 @@ def solve_steady(
         return w, loads, None
 
     w, loads, _ = at_root(solve, evaluate, residual, (flow, ages, thrust_guess))
-    solution = steady_solution(flow, n_blades, w, loads)
-    still = jax.tree.map(jnp.zeros_like, solution)
-    still = dataclasses.replace(
-        still,
-        point_loads=PointLoads(loads.position, still.point_loads.force),
-        strips=solution.strips,
-        converged=jnp.asarray(True),
-    )
-    return jax.tree.map(lambda moving, still: jnp.where(turning, moving, still), solution, still)
+    return unless_still(turning, steady_solution(flow, n_blades, w, loads))
 
 
 def steady_solution(
@@ -250,3 +273,28 @@ def steady_solution(
         sections=loads.sections,
         converged=agrees & within_momentum_theory & settled,
     )
+
+
+def unless_still(turning: Array, solution: SteadySolution) -> SteadySolution:
+    """Solution without any load where the propeller does not turn.
+
+    Parameters
+    ----------
+    turning : bool
+        Whether it does.
+    solution : SteadySolution
+        Of the propeller that turns.
+
+    Returns
+    -------
+    SteadySolution
+        The same, or zeros, which count as converged.
+    """
+    still = jax.tree.map(jnp.zeros_like, solution)
+    still = dataclasses.replace(
+        still,
+        point_loads=PointLoads(solution.point_loads.position, still.point_loads.force),
+        strips=solution.strips,
+        converged=jnp.asarray(True),
+    )
+    return jax.tree.map(lambda moving, still: jnp.where(turning, moving, still), solution, still)

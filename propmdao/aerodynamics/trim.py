@@ -12,12 +12,13 @@ import jax.numpy as jnp
 import numpy as np
 from jax import Array
 
-from propmdao.aerodynamics.lattice_loads import LatticeLoads, lattice_geometry
+from propmdao.aerodynamics.lattice_loads import LatticeLoads
 from propmdao.aerodynamics.roots import at_root, empty
 from propmdao.aerodynamics.section_laws import ViscousSections
 from propmdao.aerodynamics.solution import SteadySolution
 from propmdao.aerodynamics.steady import (
     Flow,
+    flow_at,
     induced_velocity,
     loads_at,
     solve_steady,
@@ -25,7 +26,7 @@ from propmdao.aerodynamics.steady import (
 )
 from propmdao.records import Scalar
 
-_TOLERANCE = 1.0e-8
+_TOLERANCE = 1.0e-10
 _MAX_EVALUATIONS = 60
 _RPM = 30.0 / np.pi
 _Asked = tuple[Array, int, float, float, float, float, float, float, ViscousSections | None]
@@ -263,14 +264,7 @@ def _solve_trimmed(
 ) -> tuple[Array, tuple[Array, Array], SteadySolution]:
     """Rotation speed, thrust missing at the bounds, and the loads."""
     # The rotation speed in here is that of no trial yet.
-    flow = Flow(
-        lattice=lattice_geometry(nodes, n_blades, radius),
-        radius=jnp.asarray(radius, float),
-        rotation_speed=jnp.asarray(low, float),
-        speed=jnp.asarray(speed, float),
-        density=jnp.asarray(density, float),
-        sections=sections,
-    )
+    flow = flow_at(nodes, n_blades, radius, low, speed, density, sections)
 
     def at_speed(params: _Params, omega: Array) -> tuple[Flow, Array]:
         flow, required, _ = params

@@ -1,4 +1,4 @@
-"""AerodynamicsComp and RotationSpeedComp: values of the physics, derivatives, failures."""
+"""Aerodynamics at a rotation speed or a thrust: values of the physics, derivatives, failures."""
 
 import numpy as np
 import openmdao.api as om
@@ -8,7 +8,7 @@ from numpy.testing import assert_allclose
 from propmdao.aerodynamics.section_laws import viscous_sections
 from propmdao.aerodynamics.steady import solve_steady
 from propmdao.aerodynamics.strips import strip_radii
-from propmdao.components import AerodynamicsComp, RotationSpeedComp
+from propmdao.components import AerodynamicsComp, RotationSpeedComp, TrimmedAerodynamicsComp
 from propmdao.geometry.blade import Blade, span_interpolation
 
 STEPS = {"lattice_nodes": 1e-6, "speed": 1e-3, "density": 1e-4}
@@ -112,7 +112,7 @@ def test_aerodynamic_partials(viscous, assert_directional, speed, forward):
     # Hover is the least speed, and differences on both sides of it ask for a bit of one.
     prob = viscous(max(speed, 0.2))
     # the induced velocity is good to 1e-9 of itself, its differences to some 1e-6
-    assert_directional(prob, {**SCALES, "rpm": 5.0, "thrust_guess": 0.1}, 1e-5, forward)
+    assert_directional(prob, {**SCALES, "rpm": 5.0}, 1e-5, forward)
 
 
 @pytest.mark.slow
@@ -120,7 +120,7 @@ def test_aerodynamic_partials(viscous, assert_directional, speed, forward):
 def test_inviscid_aerodynamic_partials(nodes, rotor, assert_partials, speed):
     prob = problem(AerodynamicsComp(**rotor), lattice_nodes=nodes, rpm=4200.0, speed=speed)
     prob.run_model()
-    assert_partials(prob, {**STEPS, "rpm": 0.1, "thrust_guess": 0.1}, 1e-5)
+    assert_partials(prob, {**STEPS, "rpm": 0.1}, 1e-5)
 
 
 def test_rpm_zero_gives_zero_loads(nodes, rotor):
@@ -142,13 +142,11 @@ def test_windmill_beyond_momentum_theory_is_a_failed_analysis(nodes, rotor):
 
 @pytest.fixture
 def trim(nodes, rotor):
-    """Problem with a `RotationSpeedComp` of the given options."""
+    """Problem with a component that finds the rotation speed for a thrust."""
 
-    def trim(thrust, **options):
+    def trim(thrust, component=TrimmedAerodynamicsComp, **options):
         options = {**rotor, "rpm_bounds": (2000.0, 9000.0), **options}
-        return problem(
-            RotationSpeedComp(**options), lattice_nodes=nodes, speed=8.0, thrust_required=thrust
-        )
+        return problem(component(**options), lattice_nodes=nodes, speed=8.0, thrust_required=thrust)
 
     return trim
 
@@ -162,26 +160,61 @@ def test_thrust_is_the_required_one(nodes, trim, thrust):
     prob = trim(thrust)
     prob.run_model()
     assert_allclose(thrust_at(nodes, prob.get_val("rpm")[0]), thrust, rtol=1e-6)
+    assert_allclose(prob.get_val("thrust"), thrust, rtol=1e-6)
 
 
-def test_trim_partials(meshes, trim, polars, assert_directional):
+def test_trimmed_loads_are_those_at_the_rotation_speed_found(nodes, trim, rotor):
+    trimmed = trim(1.2)
+    trimmed.run_model()
+    rpm = trimmed.get_val("rpm")
+    at_rpm = problem(AerodynamicsComp(**rotor), lattice_nodes=nodes, rpm=rpm, speed=8.0)
+    at_rpm.run_model()
+    for name in at_rpm.model.comp.get_io_metadata(iotypes="output"):
+        # the trim is good to 1e-8 of the rotation speed
+        value = at_rpm.get_val(name)
+        assert_allclose(
+            trimmed.get_val(name), value, rtol=1e-6, atol=1e-7 * np.abs(value).max(), err_msg=name
+        )
+
+
+@pytest.mark.parametrize("forward", [False, FORWARD])
+def test_trimmed_partials(meshes, trim, polars, assert_directional, forward):
     prob = trim(1.2, polars=polars)
     prob.set_val("section_polars", meshes.get_val("section_polars"))
     prob.run_model()
-    assert_directional(prob, {**SCALES, "thrust_required": 0.01}, 1e-5)
+    assert_directional(prob, {**SCALES, "thrust_required": 0.01}, 1e-5, forward)
+
+
+def test_derivatives_belong_to_the_inputs_they_are_asked_for(trim):
+    """What is kept of one point is not taken for another, nor for the same after another."""
+    prob = trim(1.2)
+    totals = {}
+    for thrust in (1.2, 2.4, 1.2):
+        prob.set_val("thrust_required", thrust)
+        prob.run_model()
+        (value,) = prob.compute_totals(of=["torque"], wrt=["speed"]).values()
+        totals.setdefault(thrust, []).append(value)
+    assert_allclose(totals[1.2][1], totals[1.2][0], rtol=1e-12)
+    assert np.abs(totals[2.4][0] / totals[1.2][0] - 1.0) > 0.1
+    # also where the model has not run at the inputs that the derivatives are asked for
+    comp, gradient = prob.model.comp, {"speed": np.zeros(1)}
+    inputs = {name: prob.get_val(name) for name in comp.get_io_metadata(iotypes="input")}
+    inputs["thrust_required"] = np.array([2.4])
+    comp.compute_jacvec_product(inputs, gradient, {"torque": np.ones(1)}, "rev")
+    assert_allclose(gradient["speed"], totals[2.4][0].ravel(), rtol=1e-9)
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("method", ["solve", "two_point"])
-def test_inviscid_trim_partials(trim, assert_partials, method):
-    prob = trim(1.2, method=method)
+@pytest.mark.parametrize("component", [TrimmedAerodynamicsComp, RotationSpeedComp])
+def test_inviscid_trim_partials(trim, assert_partials, component):
+    prob = trim(1.2, component)
     prob.run_model()
     # the root is good to 1e-8 relative, so its differences over steps of 1e-4 to some 1e-4
     assert_partials(prob, {**STEPS, "thrust_required": 1e-4}, 1e-4)
 
 
 def test_two_point_is_the_rule_of_the_thesis_and_misses_the_thrust_a_little(nodes, trim):
-    prob = trim(1.2, method="two_point", rpm_bounds=(3500.0, 5000.0))
+    prob = trim(1.2, RotationSpeedComp, rpm_bounds=(3500.0, 5000.0))
     prob.run_model()
     rpm = prob.get_val("rpm")[0]
     at = [thrust_at(nodes, end) for end in (3500.0, 5000.0)]
@@ -198,14 +231,15 @@ def test_thrust_can_be_required_in_other_units(nodes, trim):
     assert_allclose(prob.get_val("rpm", units="rad/s"), prob.get_val("rpm") * np.pi / 30.0)
 
 
-@pytest.mark.parametrize("method", ["solve", "two_point"])
-def test_thrust_out_of_reach_is_a_failed_analysis_with_the_reason(trim, method):
+@pytest.mark.parametrize("component", [TrimmedAerodynamicsComp, RotationSpeedComp])
+def test_thrust_out_of_reach_is_a_failed_analysis_with_the_reason(trim, component):
     with pytest.raises(om.AnalysisError, match=r"thrust 500 N .* rpm"):
-        trim(500.0, method=method).run_model()
+        trim(500.0, component).run_model()
 
 
-def test_bounds_that_are_no_bounds_are_an_error(trim):
+@pytest.mark.parametrize("component", [TrimmedAerodynamicsComp, RotationSpeedComp])
+def test_bounds_that_are_no_bounds_are_an_error(trim, component):
     with pytest.raises(
         ValueError, match="rpm_bounds must be positive and rising; they are 5000, 4000"
     ):
-        trim(1.2, rpm_bounds=(5000.0, 4000.0))
+        trim(1.2, component, rpm_bounds=(5000.0, 4000.0))

@@ -1,0 +1,105 @@
+"""Components whose function holds a scalar state, found by a search of the physics."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from propmdao.components.jax_component import (
+    Arrays,
+    Derivatives,
+    FunctionDerivatives,
+    JaxComponent,
+    LastPoints,
+    Shapes,
+)
+
+
+class RootComponent(JaxComponent):
+    """Component around a function of inputs and a state, at the root of its residual.
+
+    A subclass gives, beside what `JaxComponent` asks for,
+
+    - ``function``: takes the state, a number (1,), among its inputs, and returns the residual, also
+      (1,), among its outputs; both names are no variables of the component;
+    - ``state``, ``residual``: these two names;
+    - ``solve``: finds the state.
+
+    Derivatives are those of the implicit function: with the function linearised once at the root,
+    whose gradient of the residual serves all products, no search is repeated or differentiated.
+    """
+
+    state: str
+    residual: str
+
+    def __init__(self, **options: Any) -> None:
+        super().__init__(**options)
+        self._found = LastPoints(self._solve)
+
+    def solve(self, inputs: Arrays) -> Mapping[str, Any]:
+        """Find the state.
+
+        Parameters
+        ----------
+        inputs : dict of arrays
+            Inputs by name.
+
+        Returns
+        -------
+        mapping
+            Outputs by name, the state (1,), and whatever `check` needs.
+
+        Raises
+        ------
+        om.AnalysisError
+            Where there is none.
+        """
+        raise NotImplementedError
+
+    def values_at(self, inputs: Arrays) -> Mapping[str, Any]:
+        return self._found(inputs)
+
+    def derivatives_at(self, inputs: Arrays) -> Derivatives:
+        at = {**inputs, self.state: self._found(inputs)[self.state]}
+        shapes = self.output_shapes()
+        function = self.function, self.static, self.constants
+        of_function = FunctionDerivatives(*function, at, (*shapes, self.residual))
+        return _AtRoot(of_function, shapes, self.state, self.residual)
+
+    def _solve(self, inputs: Arrays) -> Mapping[str, Any]:
+        values = self.solve(inputs)
+        self.check(inputs, values)
+        return values
+
+
+class _AtRoot:
+    """Derivatives of the implicit function: dx = -(r_p dp) / r_x with the residual r(p, x) = 0."""
+
+    def __init__(self, of_function: Derivatives, shapes: Shapes, state: str, residual: str) -> None:
+        self._function, self._shapes = of_function, shapes
+        self._state, self._residual = state, residual
+
+    def forward(self, seeds: Arrays) -> Mapping[str, Any]:
+        by_inputs, by_state = self._gradient_of_residual
+        change = sum(np.vdot(by_inputs[name], np.asarray(seed)) for name, seed in seeds.items())
+        along = {**seeds, self._state: np.array([-change / by_state])}
+        return self._function.forward(along)
+
+    def reverse(self, seeds: Arrays) -> Mapping[str, Any]:
+        by_inputs, by_state = self._gradient_of_residual
+        products, by_root = self._pull(seeds, 0.0)
+        factor = -by_root / by_state
+        return {name: value + factor * by_inputs[name] for name, value in products.items()}
+
+    @cached_property
+    def _gradient_of_residual(self) -> tuple[dict[str, Any], float]:
+        return self._pull({name: np.zeros(shape) for name, shape in self._shapes.items()}, 1.0)
+
+    def _pull(self, seeds: Arrays, of_residual: float) -> tuple[dict[str, Any], float]:
+        seeds = {**seeds, self._residual: np.array([of_residual])}
+        products = {n: np.asarray(v) for n, v in self._function.reverse(seeds).items()}
+        (by_state,) = products.pop(self._state)
+        return products, by_state
