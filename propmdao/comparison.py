@@ -93,6 +93,27 @@ def print_comparison(
     Console(highlight=False).print(table)
 
 
+def side_by_side(rows: Sequence[Row], columns: Mapping[str, Mapping[str, Cell]]) -> Rows:
+    """Format columns of results, for `markdown`.
+
+    Parameters
+    ----------
+    rows : sequence of (label, key, format)
+        What to show.
+    columns : mapping of str to mapping
+        Results by key, under their heading; a missing key leaves its cell empty.
+
+    Returns
+    -------
+    list of tuple of str
+        The head first.
+    """
+    table: Rows = [("", *(heading.replace("\n", " ") for heading in columns))]
+    for label, key, form in rows:
+        table.append((label, *(_format(of.get(key), form) for of in columns.values())))
+    return table
+
+
 def markdown(rows: Rows) -> str:
     """Write rows as a Markdown table.
 

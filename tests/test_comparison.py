@@ -6,7 +6,7 @@ import csv
 
 import pytest
 
-from propmdao.comparison import ROWS, at_observer, print_comparison
+from propmdao.comparison import ROWS, at_observer, markdown, print_comparison, side_by_side
 
 COLUMNS = {
     "first\nof all": {"a": 1.23456, "name": "e63"},
@@ -62,3 +62,13 @@ def apcsf_at_two_observers():
         observers=[(1.905, 0.0), (1.905, -45.0)],
         fidelity=Fidelity(2, 4, 5, 4, 2),
     )
+
+
+def test_markdown_has_a_row_for_each_and_cells_for_what_is_missing():
+    lines = markdown(side_by_side([("A, m", "a", ".2f"), ("B", "b", ".0f")], COLUMNS)).splitlines()
+    assert lines == [
+        "|  | first of all | second | third |",
+        "| --- | --- | --- | --- |",
+        "| A, m | 1.23 | 1.00 |  |",
+        "| B |  | 2 | 7 |",
+    ]
