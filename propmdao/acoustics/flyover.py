@@ -89,7 +89,7 @@ def flyover_histories(
     loading = np.zeros_like(thickness)
     for rotor in rotors:
         chain = (*flight, *rotor.mount)
-        if any(np.any(frame.rate) or np.any(frame.acceleration) for frame in chain):
+        if not all(frame.uniform for frame in chain):
             raise ValueError("flight must be uniform here: neither turning nor accelerating")
         if rotor.rotation_speed == 0:
             continue

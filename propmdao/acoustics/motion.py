@@ -27,11 +27,16 @@ class Frame:
     axis : (3,) array
         Unit vector of the rotation, in the outer frame.
     angle : scalar
-        Rotation at time 0 [rad].
+        Rotation at time 0, but for what swings [rad].
     rate : scalar
         Rotation rate [rad/s].
     offset, velocity, acceleration : (3,) arrays
         Of the origin at time 0, in the outer frame [m], [m/s], [m/s^2].
+    swing : (2, n) array
+        What swings about the axis, as a blade flaps: factors of cos(k omega tau) and
+        sin(k omega tau), k = 1 ... n [rad].
+    swing_rate : scalar
+        omega [rad/s].
     """
 
     axis: Array
@@ -40,6 +45,13 @@ class Frame:
     offset: Array
     velocity: Array
     acceleration: Array
+    swing: Array
+    swing_rate: Array
+
+    @property
+    def uniform(self) -> bool:
+        """Whether it neither turns nor accelerates."""
+        return not (np.any(self.rate) or np.any(self.acceleration) or np.any(self.swing))
 
 
 #: A chain of frames, outermost first; the empty chain is the ground.
@@ -66,8 +78,14 @@ class Poses:
     acceleration: Array
 
 
-def rotation(axis: ArrayLike, angle: ArrayLike = 0.0, rate: ArrayLike = 0.0) -> Frame:
-    """Frame that is turned by `angle` and turns at a constant rate.
+def rotation(
+    axis: ArrayLike,
+    angle: ArrayLike = 0.0,
+    rate: ArrayLike = 0.0,
+    swing: ArrayLike = ((), ()),
+    swing_rate: ArrayLike = 0.0,
+) -> Frame:
+    """Frame that is turned by `angle`, turns at a constant rate and swings.
 
     Parameters
     ----------
@@ -77,6 +95,8 @@ def rotation(axis: ArrayLike, angle: ArrayLike = 0.0, rate: ArrayLike = 0.0) -> 
         Rotation at time 0 [rad].
     rate : float
         Rotation rate [rad/s], right-handed about the axis; negative turns the other way.
+    swing, swing_rate
+        As in `Frame`; by default it does not swing.
 
     Returns
     -------
@@ -98,6 +118,8 @@ def rotation(axis: ArrayLike, angle: ArrayLike = 0.0, rate: ArrayLike = 0.0) -> 
         np.asarray(angle, float),
         np.asarray(rate, float),
         *(rest, rest, rest),
+        np.asarray(swing, float),
+        np.asarray(swing_rate, float),
     )
 
 
@@ -118,8 +140,9 @@ def translation(
     Frame
         Without rotation.
     """
-    moves = (np.asarray(q, float) for q in (offset, velocity, acceleration))
-    return Frame(np.array([0.0, 0.0, 1.0]), np.zeros(()), np.zeros(()), *moves)
+    x, v, a = (np.asarray(q, float) for q in (offset, velocity, acceleration))
+    still = np.zeros(())
+    return Frame(np.array([0.0, 0.0, 1.0]), still, still, x, v, a, np.zeros((2, 0)), still)
 
 
 def blade_motions(
@@ -216,8 +239,16 @@ def _product(a: list[Array], b: list[Array]) -> list[Array]:
 
 def _rotations(frame: Frame, tau: Array) -> list[Array]:
     """Rotation matrices by Rodrigues' formula and their derivatives."""
-    (x, y, z), rate = np.asarray(frame.axis), float(frame.rate)
+    x, y, z = np.asarray(frame.axis)
     cross = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
-    angle = (float(frame.angle) + rate * tau)[:, None, None]
+    harmonics = np.arange(1, frame.swing.shape[1] + 1) * float(frame.swing_rate)
+    phase = np.exp(1j * np.outer(tau, harmonics))
+    swing = frame.swing[0] - 1j * frame.swing[1]  # real part: cosines and sines
+    swung, rate, acceleration = (
+        (phase @ (swing * (1j * harmonics) ** k)).real[:, None, None] for k in range(3)
+    )
+    rate = rate + float(frame.rate)
+    angle = (float(frame.angle) + float(frame.rate) * tau)[:, None, None] + swung
     matrix = np.eye(3) + np.sin(angle) * cross + (1 - np.cos(angle)) * cross @ cross
-    return [matrix, rate * cross @ matrix, rate**2 * cross @ cross @ matrix]
+    turned = cross @ matrix
+    return [matrix, rate * turned, rate**2 * cross @ turned + acceleration * turned]

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from propmdao.acoustics.motion import Frame, Motion, poses, rotation, translation
-from propmdao.wopwop.namelists import Group
+from propmdao.wopwop.namelists import HARMONICS, Group
 
 
 def change_of_base(group: Group) -> Motion:
@@ -25,7 +25,7 @@ def change_of_base(group: Group) -> Motion:
     Raises
     ------
     WopwopFileError
-        If a type is not one of those computed: time-independent or known function.
+        If a type is not one of those computed: time-independent, known function or periodic.
     """
     frames: list[Frame] = []
     moves, turns = ((group.text(f"{kind}type") or "").lower() for kind in ("translation", "angle"))
@@ -50,9 +50,16 @@ def change_of_base(group: Group) -> Motion:
         frames.append(rotation(axis, group.number("anglevalue")))
     elif turns == "knownfunction":
         frames.append(rotation(axis, group.number("psi0", 0.0), group.number("omega")))
+    elif turns == "periodic":
+        if group.number("psi0", 0.0):
+            raise group.error("Psi0 is not computed with AngleType 'periodic', whose psi is Omega t")
+        # A0 - A1 cos psi - B1 sin psi - ...
+        swing = [[-group.number(f"{q}{k}", 0.0) for k in HARMONICS] for q in "ab"]
+        mean, omega = group.number("a0", 0.0), group.number("omega")
+        frames.append(rotation(axis, mean, 0.0, swing, omega))
     else:
         raise group.error(
-            f"AngleType {turns!r} is not computed, only TimeIndependent and KnownFunction"
+            f"AngleType {turns!r} is not computed, only TimeIndependent, KnownFunction and Periodic"
         )
     return tuple(frames)
 
@@ -83,7 +90,7 @@ def uniform_motion(
     WopwopFileError
         If a frame turns or accelerates.
     """
-    if any(np.any(frame.rate) or np.any(frame.acceleration) for frame in chain):
+    if not all(frame.uniform for frame in chain):
         raise group.error("observers must be fixed or in uniform motion; these turn or accelerate")
     pose = poses(chain, np.zeros(1))
     position = pose.origin[0] + points @ pose.rotation[0].T

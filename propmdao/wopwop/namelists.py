@@ -15,6 +15,9 @@ import f90nml  # type: ignore[import-untyped]
 
 from propmdao.wopwop.binary import WopwopFileError
 
+#: Of angles that change periodically, A1 ... and B1 ...
+HARMONICS = range(1, 10)
+
 # Keys that are read by `cases`, and after the bar those that only choose what PSU-WOPWOP writes,
 # or label it.
 _KEYS = {
@@ -34,7 +37,7 @@ _KEYS = {
     "containerin": "title nbcontainer nbbase dtau ntau taumin taumax patchgeometryfile "
     "patchloadingfile periodickeyoffset peggnoiseflag bpmnoiseflag bwinoiseflag | prefix",
     "cb": "translationtype translationvalue ah vh y0 angletype anglevalue omega psi0 axistype "
-    "axisvalue title | rotation",
+    "axisvalue title a0 " + " ".join(f"a{k} b{k}" for k in HARMONICS) + " | rotation",
 }
 
 

@@ -91,8 +91,13 @@ def loading_sources(
         raise ValueError(
             "flow data (permeable surface) are not computed, only pressure and loading"
         )
-    if file.data == 2 and file.frame == 2:
-        raise ValueError("loading vectors in the mixed frame (2) are not computed: use 1 or 3")
+    at_start = poses(motion, np.zeros(1)).rotation[0]
+    if file.data == 2 and file.frame == 2 and not np.allclose(at_start, np.eye(3), atol=1e-6):
+        # As VSPAERO has it: the ground's components at time 0, turning with the patch.
+        raise ValueError(
+            "loading vectors in the mixed frame (2) are computed where the patch has the ground's"
+            " axes at time 0 only; here it is turned: use 1 or 3"
+        )
     line = is_line(geometry)
     if file.data == 1 and line:
         raise ValueError("surface pressure is given for a line; a line takes loading vectors")

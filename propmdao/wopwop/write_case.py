@@ -166,14 +166,17 @@ def _base(frame: Frame) -> dict[str, Any]:
         "VH": _list(frame.velocity),
         "Y0": _list(frame.offset),
     }
-    if np.any(frame.angle) or np.any(frame.rate):
-        values |= {
-            "AngleType": "KnownFunction",
-            "Omega": float(frame.rate),
-            "Psi0": float(frame.angle),
-            "AxisType": "TimeIndependent",
-            "AxisValue": _list(frame.axis),
-        }
+    if not (np.any(frame.angle) or np.any(frame.rate) or np.any(frame.swing)):
+        return values
+    values |= {"AxisType": "TimeIndependent", "AxisValue": _list(frame.axis)}
+    if not np.any(frame.swing):
+        turn = {"AngleType": "KnownFunction", "Psi0": float(frame.angle)}
+        return values | turn | {"Omega": float(frame.rate)}
+    if np.any(frame.rate):
+        raise ValueError("a frame that turns and swings takes two of PSU-WOPWOP's changes of base")
+    values |= {"AngleType": "Periodic", "Omega": float(frame.swing_rate), "A0": float(frame.angle)}
+    for letter, factors in zip("AB", np.asarray(frame.swing), strict=True):
+        values |= {f"{letter}{k}": -float(q) for k, q in enumerate(factors, start=1)}
     return values
 
 

@@ -54,6 +54,33 @@ def test_derivatives_of_a_precessing_rotor_are_those_of_its_position():
     np.testing.assert_allclose(acceleration[1], (velocity[2] - velocity[0]) / (2 * h), atol=1e-4)
 
 
+def test_a_flapping_blade_swings_about_its_hinge():
+    """Second flap harmonics on a turning rotor: angle by hand, derivatives by differences."""
+    omega, swing = 40.0, np.array([[0.05, -0.01], [0.02, 0.004]])
+    motion = (
+        rotation((0, 0, 1), rate=omega),
+        translation((0.1, 0, 0)),
+        rotation((0, -1, 0), angle=0.03, swing=swing, swing_rate=omega),
+    )
+    t, h = 0.21, 1e-5
+    position, velocity, acceleration = place(poses(motion, t + h * np.arange(-1, 2)), POINT)
+    psi = omega * t * np.array([1, 2])
+    flap = 0.03 + swing[0] @ np.cos(psi) + swing[1] @ np.sin(psi)
+    blade = np.array([0.1, 0, 0]) + Rotation.from_rotvec([0, -flap, 0]).apply(POINT[0])
+    expected = Rotation.from_rotvec([0, 0, omega * t]).apply(blade)
+    np.testing.assert_allclose(position[1, 0], expected, rtol=1e-13)
+    # h^2 / 6 of derivatives of about 40^3 and 40^4, and rounding over h
+    np.testing.assert_allclose(velocity[1], (position[2] - position[0]) / (2 * h), atol=1e-5)
+    np.testing.assert_allclose(acceleration[1], (velocity[2] - velocity[0]) / (2 * h), atol=1e-3)
+
+
+def test_frames_that_turn_swing_or_accelerate_are_not_uniform():
+    assert translation((1, 0, 0), (2, 0, 0)).uniform and rotation((0, 0, 1), 0.4).uniform
+    swinging = rotation((0, 0, 1), swing=[[0.1], [0.0]], swing_rate=3.0)
+    accelerated = translation(acceleration=(0, 0, 1))
+    assert not any(f.uniform for f in (rotation((0, 0, 1), rate=1.0), swinging, accelerated))
+
+
 def test_unequal_blades_of_two_rotors_with_their_own_speed_and_sense():
     left = (translation((0, 1, 0)),)
     right = (translation((0, -1, 0)),)

@@ -7,7 +7,7 @@ import dataclasses
 import numpy as np
 import pytest
 
-from propmdao.acoustics.motion import rotation
+from propmdao.acoustics.motion import rotation, translation
 from propmdao.wopwop import LoadingFile, Zone
 from propmdao.wopwop.sources import loading_sources, thickness_sources
 
@@ -47,6 +47,21 @@ def test_vectors_in_the_grounds_frame_stay_where_they_point(geometry, loading):
     # -Omega x F
     rate = np.cross([0, 0, -40.0], given.vector[2])
     np.testing.assert_allclose(given.vector_rate[2], rate, atol=1e-9)
+
+
+def test_vectors_in_the_mixed_frame_turn_with_the_patch(geometry, loading):
+    """Where that has the ground's axes at time 0: there all readings of "mixed" agree."""
+    mixed = dataclasses.replace(loading, frame=2)
+    flown = translation((0, 0, 5.0), velocity=(0, 0, 8.0))
+    motion = (flown, rotation((0, 0, 1), rate=40.0))
+    given, local = (
+        loading_sources(geometry.zones[1], loading.zones[0], file, TAU, motion)
+        for file in (mixed, loading)
+    )
+    np.testing.assert_array_equal(given.vector, local.vector)
+    turned = (*motion, rotation((0, 0, 1), np.pi))
+    with pytest.raises(ValueError, match="only; here it is turned: use 1 or 3"):
+        loading_sources(geometry.zones[1], loading.zones[0], mixed, TAU, turned)
 
 
 def test_a_flapping_surface_keeps_its_panels_and_gains_a_velocity(geometry):

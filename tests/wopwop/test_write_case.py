@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from propmdao.acoustics import arc
-from propmdao.acoustics.motion import rotation, translation
+from propmdao.acoustics.motion import poses, rotation, translation
 from propmdao.acoustics.moving_sources import AperiodicLoads, PeriodicLoads
 from propmdao.acoustics.reception import Observers
 from propmdao.acoustics.rotors import Rotor, equally_spaced, mirrored, rotor_histories
@@ -20,6 +20,7 @@ from propmdao.propeller import load_propeller
 from propmdao.records import PointLoads
 from propmdao.wopwop import read_geometry, read_loading, run_case, write_case
 from propmdao.wopwop.blade_files import blade_geometry, blade_loading
+from propmdao.wopwop.cases import read_cases
 from propmdao.wopwop.sources import loading_sources, thickness_sources
 
 RHO, C, OMEGA = 1.2, 340.0, 1200.0
@@ -153,3 +154,27 @@ def test_what_cannot_be_written(tmp_path, rotor, nodes):
     one = PointLoads(jnp.ones((1, 3)), jnp.ones((1, 3)))
     with pytest.raises(ValueError, match="must act at 2 or more points"):
         write_case(tmp_path, [Rotor([0.0], OMEGA, loads=one)], [None], listeners, t, RHO, C)
+
+
+def test_a_swinging_frame_is_written_and_read_again(tmp_path, loads):
+    """AngleType 'Periodic': A0 - A1 cos psi - B1 sin psi - ..."""
+    outer = (
+        translation((1.0, 0, 0), velocity=(0, 0, 3.0)),
+        rotation((0, 1, 0), angle=0.1, swing=[[0.02, 0.0], [-0.03, 0.01]], swing_rate=50.0),
+    )
+    rotor = Rotor(equally_spaced(2), OMEGA, loads=loads)
+    observers = Observers(jnp.array([[9.0, 0, 0]]), jnp.zeros(3))
+    folder, times = tmp_path / "case", np.linspace(0.0, 0.1, 9)
+    write_case(folder, [rotor], [None], observers, times, RHO, C, outer)
+    assert "periodic" in (folder / "case.nam").read_text().lower()
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        (case,) = read_cases(folder)
+    read = poses(case.containers[0].motion, times)
+    turning = rotation((0, 0, 1), rate=OMEGA)
+    expected = poses((*outer, *rotor.mount, turning), times)
+    np.testing.assert_allclose(read.rotation, expected.rotation, atol=1e-12)
+    np.testing.assert_allclose(read.origin, expected.origin, atol=1e-12)
+    both = rotation((0, 1, 0), rate=1.0, swing=[[0.1], [0.0]], swing_rate=2.0)
+    with pytest.raises(ValueError, match="takes two of PSU-WOPWOP's changes of base"):
+        write_case(folder, [rotor], [None], observers, times, RHO, C, (both,))
