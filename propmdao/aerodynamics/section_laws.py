@@ -85,7 +85,9 @@ class SectionLaws:
     ----------
     curves : SectionCurves
         In two dimensions, at the strips' Reynolds and Mach numbers.
-    zero_lift_angle, stall_delay : (ns,) arrays
+    zero_lift_angle : (ns,) array
+        By thin-airfoil theory [rad].
+    potential_zero_lift_angle, stall_delay : (ns,) arrays
         As `delayed_stall` takes them.
     mean : (ns, ns) array
         Means over the span near each strip.
@@ -93,6 +95,7 @@ class SectionLaws:
 
     curves: SectionCurves
     zero_lift_angle: Array
+    potential_zero_lift_angle: Array
     stall_delay: Array
     mean: Array
 
@@ -103,7 +106,7 @@ class SectionLaws:
     def beyond_thin(self, alpha: Array) -> tuple[Array, Array]:
         """What the polars add to the lift of thin-airfoil theory, and drag: (ns,) each."""
         cl, cd, _ = curve_coefficients(self.curves, alpha)
-        cl, cd = delayed_stall(cl, cd, alpha, self.zero_lift_angle, self.stall_delay)
+        cl, cd = delayed_stall(cl, cd, alpha, self.potential_zero_lift_angle, self.stall_delay)
         return cl - self.thin(alpha), cd
 
 
@@ -135,7 +138,20 @@ def section_laws(
     turning_share = tip_speed / jnp.hypot(tip_speed, axial_speed)
     factor = delay_factor(strips.chord / strips.radius, strips.r_over_R, turning_share)
     delay = sections.stall_delay * factor
-    return SectionLaws(curves, strips.zero_lift_angle, delay, _spanwise_mean(strips))
+    thin, mean = strips.zero_lift_angle, _spanwise_mean(strips)
+    return SectionLaws(curves, thin, _potential_zero_lift_angle(curves, thin), delay, mean)
+
+
+def _potential_zero_lift_angle(curves: SectionCurves, thin: Array) -> Array:
+    """Where the lift of potential flow vanishes that meets the polars in attached flow: (ns,).
+
+    At half the zero-lift angle above the chord line sections work near their best, at any camber
+    and its mirror image. What the boundary layer takes off the camber there is no stall for
+    rotation to delay.
+    """
+    attached = -0.5 * thin
+    cl = curve_coefficients(curves, attached)[0]
+    return attached - jnp.arcsin(cl / (2.0 * jnp.pi))
 
 
 def _spanwise_mean(strips: Strips) -> Array:

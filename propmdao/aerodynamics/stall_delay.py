@@ -51,7 +51,8 @@ def delayed_stall(
     cl, cd : (n,) arrays
         In two dimensions.
     alpha, zero_lift_angle : (n,) arrays
-        Angle of attack and that of no lift in potential flow [rad].
+        Angle of attack, and where potential flow has no lift that agrees with the polar where the
+        flow is attached [rad].
     factor : (n,) array
         Of `delay_factor`; 0 leaves the coefficients as they are.
 
