@@ -273,5 +273,5 @@ def _analysed(
 
 def _suffix(radius: float, elevation_deg: float, azimuth_deg: float = 0.0) -> str:
     """What tells the columns of one observer from those of another."""
-    azimuth = f",az{azimuth_deg:+g}deg" if azimuth_deg else ""
+    azimuth = f"_az{azimuth_deg:+g}deg" if azimuth_deg else ""
     return f"@{radius:g}m{elevation_deg:+g}deg{azimuth}"

@@ -52,7 +52,7 @@ def change_of_base(group: Group) -> Motion:
         frames.append(rotation(axis, group.number("psi0", 0.0), group.number("omega")))
     elif turns == "periodic":
         if group.number("psi0", 0.0):
-            raise group.error("Psi0 is not computed with AngleType 'periodic', whose psi is Omega t")
+            raise group.error("Psi0 is not computed with AngleType 'periodic': psi is Omega t")
         # A0 - A1 cos psi - B1 sin psi - ...
         swing = [[-group.number(f"{q}{k}", 0.0) for k in HARMONICS] for q in "ab"]
         mean, omega = group.number("a0", 0.0), group.number("omega")

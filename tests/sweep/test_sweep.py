@@ -77,7 +77,7 @@ def test_noise_is_heard_in_the_same_way_at_all_points(
     row = rows_of(path)[1]
     assert row["surroundings"] == "hard ground 2 m below the hub" and row["trip"] == "heavy"
     assert "oaspl_db@1.905m-20deg" in row
-    assert row["oaspl_broadband_db@1.905m-20deg,az+90deg"] == "45.0"
+    assert row["oaspl_broadband_db@1.905m-20deg_az+90deg"] == "45.0"
     # What is heard in another way is another sweep: its columns differ.
     with pytest.raises(ValueError, match="oaspl_broadband_db@1.905m-20deg only there"):
         sweep(propeller, points, path, observers=places)
