@@ -157,8 +157,9 @@ def analyze(
             steady.strips, states.relative_speed, states.lift_coefficient, blade, section_radii
         )
         noise = self_noise(flow, propeller.n_blades, omega, *air, SOUND_SPEED, ends, trip)
-        way = BANDS_HZ, paths, mach, SOUND_SPEED, surroundings
-        noise = jax.tree.map(lambda power: bands_by_paths(power, *way), noise)
+        if surroundings != Surroundings():
+            way = BANDS_HZ, paths, mach, SOUND_SPEED, surroundings
+            noise = jax.tree.map(lambda power: bands_by_paths(power, *way), noise)
     of = coefficients(steady.thrust, steady.torque, omega, *air, propeller.diameter)
     return Analysis(float(rpm), *air, viscous, steady, of, points, heard, noise, trip, surroundings)
 

@@ -159,8 +159,8 @@ def tones_by_paths(
     Tones
         At the (n_observers,).
     """
-    distance, doppler = way_flying_along(jnp.asarray(paths).reshape(-1, 3), mach)
     if surroundings.air is not None:
+        distance, doppler = way_flying_along(jnp.asarray(paths).reshape(-1, 3), mach)
         tones = absorb_tones(tones, distance, surroundings.air, doppler)
     n_ways, n, _ = np.shape(paths)
     if n_ways == 1:
@@ -206,10 +206,9 @@ def bands_by_paths(
     -----
     Two ways interfere as those from a point in the rotor's centre: see `bands_with_reflection`.
     """
-    x = jnp.asarray(paths)
-    distance, doppler = way_flying_along(x, mach)
-    f = jnp.asarray(band_hz, float)
+    x, f = jnp.asarray(paths), jnp.asarray(band_hz, float)
     power = jnp.asarray(mean_square).reshape(*x.shape[:2], f.size)
+    distance, doppler = way_flying_along(x, mach)
     if surroundings.air is not None:
         power = absorb(power, f * doppler[..., None], distance, surroundings.air)
     if len(power) == 1:
