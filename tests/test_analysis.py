@@ -5,6 +5,7 @@ import json
 import numpy as np
 import pytest
 
+from propmdao.acoustics.surroundings import Surroundings
 from propmdao.analysis import analyze
 from propmdao.fidelity import Fidelity
 from propmdao.propeller import load_propeller
@@ -105,3 +106,38 @@ def test_bad_input_is_refused_in_one_line(asked, says):
         run(**asked)
     assert says in str(error.value)
     assert "\n" not in str(error.value)
+
+
+def test_on_the_ground_all_is_six_decibels_louder_and_nothing_else_changes():
+    """Observers on the ground 3 m below a hovering rotor, or wherever the ground is: the same."""
+    places = [(5.0, np.degrees(np.arcsin(-0.6)), azimuth) for azimuth in (0.0, 70.0)]
+    free = run(rpm=4200.0, observers=places, broadband=True)
+    for ground in ("flush", 3.0):
+        heard = run(rpm=4200.0, observers=places, broadband=True, surroundings=Surroundings(ground))
+        assert heard["thrust"] == free["thrust"] and heard["surroundings"]["ground"] == ground
+        for ours, theirs in zip(heard["observers"], free["observers"], strict=True):
+            assert ours["azimuth_deg"] == theirs["azimuth_deg"]
+            for name in ("oaspl_db", "oaspl_dba", "oaspl_thickness_db", "oaspl_broadband_db"):
+                assert ours[name] - theirs[name] == pytest.approx(20 * np.log10(2), abs=1e-6)
+
+
+def test_in_axial_flight_it_is_as_loud_all_around_until_the_ground_is_on_one_side():
+    places = [(2.0, 10.0, azimuth) for azimuth in (0.0, 90.0, 180.0)]
+    free, level = (
+        [o["oaspl_db"] for o in run(rpm=4200.0, speed=8.0, observers=places, **how)["observers"]]
+        for how in ({}, {"surroundings": Surroundings(2.0, level_flight=True)})
+    )
+    assert np.ptp(free) < 1e-6
+    # Azimuth 0 is down: 3 cm above the ground.
+    assert 5.5 < level[0] - free[0] < 6.1 and np.ptp(level) > 1.0
+
+
+def test_tripped_blades_shed_no_laminar_vortices():
+    asked = {"rpm": 4200.0, "speed": 8.0, "observers": [(2.0, -20.0)], "broadband": True}
+    untripped, tripped = (run(**asked, trip=trip) for trip in ("none", "heavy"))
+    assert (untripped["trip"], tripped["trip"]) == ("none", "heavy")
+    shed = [band["laminar_shedding_db"] for band in tripped["observers"][0]["broadband"]]
+    assert max(shed) == -200.0
+    loud, quiet = (one["observers"][0]["oaspl_broadband_db"] for one in (untripped, tripped))
+    assert loud - quiet > 5.0
+    assert tripped["thrust"] == untripped["thrust"]
