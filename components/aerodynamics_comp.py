@@ -15,6 +15,7 @@ from propmdao.aerodynamics.polars import SectionPolars
 from propmdao.aerodynamics.solution import SteadySolution, failure
 from propmdao.aerodynamics.steady import solve_steady
 from propmdao.components.jax_component import Arrays, evaluate
+from propmdao.components.operating_points import STATIC, OperatingPointsComp
 from propmdao.components.root_component import RootComponent
 from propmdao.components.section_inputs import add_section_inputs, section_grid, with_inputs
 from propmdao.fidelity import Fidelity
@@ -26,15 +27,18 @@ def n_loads(fidelity: Fidelity) -> int:
     return nc * ns + nc * (ns + 1) + ns
 
 
-class AerodynamicsComp(RootComponent):
+class AerodynamicsComp(OperatingPointsComp, RootComponent):
     """Steady vortex lattice with its helical wake, hover included.
+
+    With `num_nodes` everything but the blade, `lattice_nodes` and `section_polars`, has a leading
+    axis of that many operating points.
 
     Inputs
     ------
     lattice_nodes : (n_chordwise + 1, n_spanwise + 1, 3) array
         Corner points of the lattice of blade 1, ``m``.
     rpm : float
-        Rotation speed, ``rpm``; 0 gives zero loads.
+        Rotation speed, ``rpm``; where it is exactly 0, every output is 0.
     speed : float
         Axial flight speed, 0 is hover, ``m/s``.
     density : float
@@ -64,6 +68,11 @@ class AerodynamicsComp(RootComponent):
 
     Options
     -------
+    num_nodes : int or None
+        Number of operating points; None is a single one, with the shapes above.
+    loads : bool
+        Whether there are the outputs that are arrays, `circulation` and those below it. Without
+        them derivatives are cheap where many are asked for, as missions do.
     n_blades : int
         Number of equally spaced blades.
     radius : float
@@ -78,10 +87,12 @@ class AerodynamicsComp(RootComponent):
     Raises
     ------
     om.AnalysisError
-        When the solution does not converge, with the reason.
+        When the solution does not converge, with the reason and, where there are several, the node.
     """
 
     def initialize(self) -> None:
+        super().initialize()
+        self.options.declare("loads", True, types=bool, desc="Whether they are outputs.")
         self.options.declare("n_blades", types=int, desc="Number of blades.")
         self.options.declare("radius", types=float, desc="Tip radius [m].")
         self.options.declare("fidelity", Fidelity(), types=Fidelity, desc="Numbers of panels.")
@@ -91,23 +102,18 @@ class AerodynamicsComp(RootComponent):
     def setup(self) -> None:
         fidelity = self.options["fidelity"]
         nc, ns = fidelity.n_chordwise, fidelity.n_spanwise
-        self.add_input("lattice_nodes", shape=(nc + 1, ns + 1, 3), units="m")
+        self.add_input("lattice_nodes", shape=(nc + 1, ns + 1, 3), units="m", tags=STATIC)
         self._add_rotation_speed()
-        self.add_input("speed", val=0.0, units="m/s")
-        self.add_input("density", val=1.225, units="kg/m**3")
-        self.add_output("thrust", units="N", desc="Of all blades.")
-        self.add_output("torque", units="N*m", desc="Of all blades.")
-        self.add_output("shaft_power", units="W", desc="Of all blades.")
-        self.add_output("efficiency", desc="Thrust times speed over shaft power.")
+        self.add_point_input("speed", val=0.0, units="m/s")
+        self.add_point_input("density", val=1.225, units="kg/m**3")
+        self.add_point_output("thrust", units="N", desc="Of all blades.")
+        self.add_point_output("torque", units="N*m", desc="Of all blades.")
+        self.add_point_output("shaft_power", units="W", desc="Of all blades.")
+        self.add_point_output("efficiency", desc="Thrust times speed over shaft power.")
         for name in ("J", "CT", "CQ", "CP"):
-            self.add_output(name)
-        self.add_output("circulation", shape=(nc, ns), units="m**2/s")
-        self.add_output("load_position", shape=(n_loads(fidelity), 3), units="m")
-        self.add_output(
-            "load_force", shape=(n_loads(fidelity), 3), units="N", desc="Force on the fluid."
-        )
-        self.add_output("section_speed", shape=ns, units="m/s", desc="Relative to the air.")
-        self.add_output("section_lift_coefficient", shape=ns, desc="In the middle of the strips.")
+            self.add_point_output(name)
+        if self.options["loads"]:
+            self._add_loads(nc, ns, n_loads(fidelity))
         polars, grid = self.options["polars"], None
         if polars is not None:
             add_section_inputs(self, polars, ns)
@@ -117,7 +123,19 @@ class AerodynamicsComp(RootComponent):
         self.constants = jnp.asarray(self.options["radius"]), grid
 
     def _add_rotation_speed(self) -> None:
-        self.add_input("rpm", val=4000.0, units="rpm")
+        self.add_point_input("rpm", val=4000.0, units="rpm")
+
+    def _add_loads(self, nc: int, ns: int, n: int) -> None:
+        self.add_point_output("circulation", shape=(nc, ns), units="m**2/s")
+        self.add_point_output("load_position", shape=(n, 3), units="m")
+        self.add_point_output("load_force", shape=(n, 3), units="N", desc="Force on the fluid.")
+        self.add_point_output("section_speed", shape=(ns,), units="m/s", desc="Through the air.")
+        self.add_point_output(
+            "section_lift_coefficient", shape=(ns,), desc="In the middle of the strips."
+        )
+
+    def at_rest(self, inputs: Arrays) -> bool:
+        return not inputs["rpm"].any()
 
     def solve(self, inputs: Arrays) -> Any:
         return evaluate(_steady, self.static, self.constants, inputs)

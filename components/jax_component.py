@@ -37,7 +37,7 @@ class JaxComponent(om.ExplicitComponent):
 
     def __init__(self, **options: Any) -> None:
         super().__init__(**options)
-        self._linearised = LastPoints(self.derivatives_at)
+        self._linearised = LastPoints(self.derivatives_at, self.n_points)
 
     def compute(self, inputs: Any, outputs: Any) -> None:
         values = self.values_at(arrays(inputs))
@@ -56,6 +56,16 @@ class JaxComponent(om.ExplicitComponent):
             products = derivatives.reverse(seeds_of(d_outputs, self.output_shapes()))
             for name in d_inputs:
                 d_inputs[name] += products[name]
+
+    def n_points(self) -> int:
+        """Points at which the component works at a time.
+
+        Returns
+        -------
+        int
+            One, unless a subclass knows better.
+        """
+        return 1
 
     def output_shapes(self) -> Shapes:
         """Shapes of the outputs that `function` returns.
@@ -208,13 +218,13 @@ class LastPoints(Generic[Result]):
     ----------
     function : callable
         Of a dictionary of arrays.
-    n : int
-        Number of points that are remembered.
+    n_points : callable
+        Returns the number of points that are remembered.
     """
 
-    def __init__(self, function: Callable[[Arrays], Result], n: int = 1) -> None:
-        self._function = function
-        self._results: deque[tuple[Arrays, Result]] = deque(maxlen=n)
+    def __init__(self, function: Callable[[Arrays], Result], n_points: Callable[[], int]) -> None:
+        self._function, self._n_points = function, n_points
+        self._results: deque[tuple[Arrays, Result]] = deque()
 
     def __call__(self, inputs: Arrays) -> Result:
         """Return the function's result, computed where the inputs are not those of a last point."""
@@ -223,6 +233,8 @@ class LastPoints(Generic[Result]):
                 return result
         result = self._function(inputs)
         self._results.append((inputs, result))
+        while len(self._results) > self._n_points():
+            self._results.popleft()
         return result
 
 
@@ -274,23 +286,3 @@ def _linearise(
 def _pull_back(pull: Any, seeds: Arrays) -> Arrays:
     products: Arrays = pull(seeds)[0]
     return products
-
-
-def forward(
-    function: Function,
-    static: Hashable,
-    constants: Any,
-    inputs: Arrays,
-    of: tuple[str, ...],
-    seeds: Arrays,
-) -> Arrays:
-    """Return derivatives of the outputs `of` along the direction `seeds`, one for each input."""
-    return dict(FunctionDerivatives(function, static, constants, inputs, of).forward(seeds))
-
-
-def reverse(
-    function: Function, static: Hashable, constants: Any, inputs: Arrays, seeds: Arrays
-) -> Arrays:
-    """Return derivatives by every input of the sum of the outputs weighted with `seeds`."""
-    of = tuple(seeds)
-    return dict(FunctionDerivatives(function, static, constants, inputs, of).reverse(seeds))

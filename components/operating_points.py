@@ -9,11 +9,18 @@ import numpy as np
 import openmdao.api as om
 from openmdao.utils.options_dictionary import OptionsDictionary
 
-from propmdao.components.jax_component import JaxComponent, arrays, evaluate, forward, reverse
+from propmdao.components.jax_component import (
+    Arrays,
+    Derivatives,
+    JaxComponent,
+    LastPoints,
+    Shapes,
+    arrays,
+    seeds_of,
+)
 
 #: Tells Dymos that an input has no axis of nodes.
 STATIC = ["dymos.static_target"]
-Values = dict[str, Any]
 Shape = tuple[int, ...]
 
 
@@ -41,8 +48,9 @@ class OperatingPointsComp(JaxComponent):
     A subclass declares with `add_point_input` and `add_point_output` what belongs to an operating
     point, with OpenMDAO's own methods inputs that all of them share and outputs that never change.
     Its ``function`` knows of one point only. The points are gone through one by one: the compiled
-    code is that of one point, whatever their number, so is the memory, and a point that no seed
-    touches costs nothing.
+    code is that of one point, whatever their number, so is the memory of an evaluation, and a point
+    that no seed touches is not differentiated. Where all outputs of a point are scalars, their
+    gradients are computed once and kept: missions ask for many products at the same points.
 
     Options
     -------
@@ -52,9 +60,10 @@ class OperatingPointsComp(JaxComponent):
     """
 
     def __init__(self, **options: Any) -> None:
-        self._input_shapes: dict[str, Shape] = {}
-        self._output_shapes: dict[str, Shape] = {}
+        self._input_shapes: Shapes = {}
+        self._output_shapes: Shapes = {}
         super().__init__(**options)
+        self._linearised = LastPoints(self._linearise, self.n_points)
 
     def initialize(self) -> None:
         declare_num_nodes(self.options)
@@ -78,25 +87,30 @@ class OperatingPointsComp(JaxComponent):
         self._input_shapes[name] = shape or (1,)
         self.add_input(name, val=np.full(self._full_shape(shape), val), **metadata)
 
-    def add_point_output(self, name: str, *, shape: Shape = (), **metadata: Any) -> None:
+    def add_point_output(
+        self, name: str, val: float = 1.0, *, shape: Shape = (), **metadata: Any
+    ) -> None:
         """Declare an output of each operating point, one that ``function`` returns.
 
         Parameters
         ----------
         name : str
             Its name.
+        val : float
+            Initial value.
         shape : tuple of int
             At one point; () is a scalar, which ``function`` gets and returns as (1,).
         **metadata
             What ``add_output`` takes beside these.
         """
         self._output_shapes[name] = shape or (1,)
-        self.add_output(name, shape=self._full_shape(shape), **metadata)
+        self.add_output(name, val=np.full(self._full_shape(shape), val), **metadata)
 
     def compute(self, inputs: Any, outputs: Any) -> None:
-        for point, at in self.points(inputs):
+        still = dict.fromkeys(self._output_shapes, 0.0)
+        for point, at in self._points(inputs):
             try:
-                values = self.compute_point(at)
+                values = still if self.at_rest(at) else self.values_at(at)
             except om.AnalysisError as error:
                 if self.options["num_nodes"] is None:
                     raise
@@ -104,8 +118,28 @@ class OperatingPointsComp(JaxComponent):
             for name in self._output_shapes:
                 self._at(point, name, outputs)[:] = values[name]
 
-    def compute_point(self, inputs: Values) -> Mapping[str, Any]:
-        """Outputs at one operating point.
+    def compute_jacvec_product(self, inputs: Any, d_inputs: Any, d_outputs: Any, mode: str) -> None:
+        start, end = (d_inputs, d_outputs) if mode == "fwd" else (d_outputs, d_inputs)
+        given = arrays(start)
+        for point, at in self._points(inputs):
+            shapes = {n: v.shape for n, v in at.items()} if mode == "fwd" else self._output_shapes
+            seeds = seeds_of({name: self._at(point, name, given) for name in given}, shapes)
+            if self.at_rest(at) or not any(seed.any() for seed in seeds.values()):
+                continue
+            derivatives = self._linearised(at)
+            products = (derivatives.forward if mode == "fwd" else derivatives.reverse)(seeds)
+            for name in end:
+                if name in products:  # outputs that never change have none
+                    self._at(point, name, end)[:] += products[name]
+
+    def n_points(self) -> int:
+        return self.options["num_nodes"] or 1
+
+    def output_shapes(self) -> Shapes:
+        return self._output_shapes
+
+    def at_rest(self, inputs: Arrays) -> bool:
+        """Whether all outputs and all derivatives of a point are zero without a calculation.
 
         Parameters
         ----------
@@ -114,56 +148,21 @@ class OperatingPointsComp(JaxComponent):
 
         Returns
         -------
-        mapping
-            Outputs by name.
-
-        Raises
-        ------
-        om.AnalysisError
-            Where they have no meaning.
+        bool
+            By default never.
         """
-        values = evaluate(self.function, self.static, self.constants, inputs)
-        self.check(inputs, values)
-        return values
+        return False
 
-    def compute_jacvec_product(self, inputs: Any, d_inputs: Any, d_outputs: Any, mode: str) -> None:
-        # Every variable always takes part, if only with zeros: to compile for each combination that
-        # OpenMDAO asks for would take far longer than the products.
-        given = arrays(d_inputs if mode == "fwd" else d_outputs)
-        for point, at in self.points(inputs):
-            blank = (
-                at if mode == "fwd" else {n: np.zeros(s) for n, s in self._output_shapes.items()}
-            )
-            seeds = {
-                name: self._at(point, name, given) if name in given else np.zeros_like(value)
-                for name, value in blank.items()
-            }
-            if not any(seed.any() for seed in seeds.values()):
-                continue
-            function = self.function, self.static, self.constants, at
-            if mode == "fwd":
-                products, targets = forward(*function, tuple(self._output_shapes), seeds), d_outputs
-            else:
-                products, targets = reverse(*function, seeds), d_inputs
-            for name in targets:
-                if name in products:  # outputs that never change have none
-                    self._at(point, name, targets)[:] += products[name]
+    def _linearise(self, inputs: Arrays) -> Derivatives:
+        derivatives = self.derivatives_at(inputs)
+        if all(shape == (1,) for shape in self._output_shapes.values()):
+            return _Gradients(derivatives, tuple(self._output_shapes))
+        return derivatives
 
-    def points(self, inputs: Any) -> Iterator[tuple[int, Values]]:
-        """Go through the operating points.
-
-        Parameters
-        ----------
-        inputs : mapping
-            OpenMDAO's vector of inputs.
-
-        Yields
-        ------
-        point, inputs : int, dict of arrays
-            Number of the point, and its inputs with those that all points share.
-        """
+    def _points(self, inputs: Any) -> Iterator[tuple[int, Arrays]]:
+        """Points by number, and their inputs with those that all points share."""
         values = arrays(inputs)
-        for point in range(self.options["num_nodes"] or 1):
+        for point in range(self.n_points()):
             yield point, {name: self._at(point, name, values) for name in values}
 
     def _full_shape(self, shape: Shape) -> Shape:
@@ -175,3 +174,26 @@ class OperatingPointsComp(JaxComponent):
         """View of the part of a variable that belongs to a point, or of one that all share."""
         shape = self._input_shapes.get(name) or self._output_shapes.get(name)
         return values[name] if shape is None else values[name].reshape(-1, *shape)[point]
+
+
+class _Gradients:
+    """Derivatives of scalars as gradients, one product back for each."""
+
+    def __init__(self, derivatives: Derivatives, scalars: tuple[str, ...]) -> None:
+        zero = {name: np.zeros(1) for name in scalars}
+        rows = [derivatives.reverse({**zero, of: np.ones(1)}) for of in scalars]
+        self._scalars = scalars
+        self._by = {name: np.stack([np.asarray(row[name]) for row in rows]) for name in rows[0]}
+
+    def forward(self, seeds: Arrays) -> Mapping[str, Any]:
+        # Most seeds are zero, and those of the blade, the large ones, where it is no variable.
+        products = sum(
+            np.tensordot(self._by[name], seed, axes=np.ndim(seed))
+            for name, seed in seeds.items()
+            if seed.any()
+        )
+        return dict(zip(self._scalars, np.atleast_1d(products), strict=True))
+
+    def reverse(self, seeds: Arrays) -> Mapping[str, Any]:
+        weights = np.concatenate([seeds[of] for of in self._scalars])
+        return {name: np.tensordot(weights, by, axes=1) for name, by in self._by.items()}

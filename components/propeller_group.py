@@ -13,6 +13,7 @@ from propmdao.components.acoustics_comp import AcousticsComp
 from propmdao.components.aerodynamics_comp import AerodynamicsComp, n_loads
 from propmdao.components.broadband_comp import BroadbandComp
 from propmdao.components.geometry_comp import CAMBER_INPUTS, GeometryComp, blade_distributions
+from propmdao.components.operating_points import declare_num_nodes
 from propmdao.components.rotation_speed_comp import RotationSpeedComp
 from propmdao.components.trimmed_aerodynamics_comp import TrimmedAerodynamicsComp
 from propmdao.fidelity import Fidelity
@@ -26,6 +27,9 @@ class PropellerGroup(om.Group):
     """Blade, rotation speed for a thrust, aerodynamics, tonal and broadband noise.
 
     Every variable is promoted under its name in the components, which describe shapes and units.
+    With `num_nodes` what belongs to an operating point, thus everything but the blade and the
+    observers, has a leading axis of that many. Exactly 0 N required, or 0 rpm, is a propeller that
+    stands still: no loads, silence (-200 dB).
 
     Inputs
     ------
@@ -59,10 +63,15 @@ broadband_mean_square_pressure, band_frequency
 
     Options
     -------
+    num_nodes : int or None
+        Number of operating points, of a mission's phase or a multi-point design: their axis leads,
+        also that of a single one. None (default): one point, with the shapes above.
     propeller : Propeller
         The described propeller; its values are the initial ones.
-    observers : (n_observers, 3) array
-        Initial observer positions [m]; `propmdao.acoustics.observers.arc` makes them.
+    observers : (n_observers, 3) array or None
+        Initial observer positions [m]; `propmdao.acoustics.observers.arc` makes them. None
+        (default): thrust and power alone, neither loads nor noise are outputs, and the derivatives
+        of missions are cheap.
     fidelity : Fidelity
         Numbers of panels and harmonics.
     trim : str
@@ -89,12 +98,20 @@ broadband_mean_square_pressure, band_frequency
         Add the broadband self-noise of the blades.
     camber : str
         ``"camber_over_chord"``, or ``"design_lift_coefficient"`` to give camber as that.
+
+    Raises
+    ------
+    ValueError
+        For control points that do not fit the blade, and for `broadband` without observers.
+    om.AnalysisError
+        Where a component has no result, with the node where there are several.
     """
 
     def initialize(self) -> None:
+        declare_num_nodes(self.options)
         declare = self.options.declare
         declare("propeller", types=Propeller, desc="The described propeller.")
-        declare("observers", types=np.ndarray, desc="Initial observer positions [m].")
+        declare("observers", None, types=np.ndarray, allow_none=True, desc="Positions [m].")
         declare("fidelity", Fidelity(), types=Fidelity, desc="Panels and harmonics.")
         declare("trim", "thrust", values=("thrust", "rpm"), desc="What is given.")
         declare("rpm_bounds", None, types=tuple, allow_none=True, desc="Lowest and highest rpm.")
@@ -123,7 +140,9 @@ broadband_mean_square_pressure, band_frequency
         )
         for name in blade_distributions(propeller, options["camber"]):
             self._promote_distribution("geometry", name)
+        observers = options["observers"]
         rotor = {
+            "num_nodes": options["num_nodes"],
             "n_blades": int(propeller.n_blades),
             "radius": 0.5 * propeller.diameter,
             "fidelity": fidelity,
@@ -140,24 +159,25 @@ broadband_mean_square_pressure, band_frequency
             self.add_subsystem("rotation_speed", RotationSpeedComp(**rotor), promotes=["*"])
             del rotor["rpm_bounds"]
         aerodynamics = TrimmedAerodynamicsComp if trimmed else AerodynamicsComp
-        self.add_subsystem("aerodynamics", aerodynamics(**rotor), promotes=["*"])
-        self.set_input_defaults("sound_speed", 340.294, units="m/s")
         self.add_subsystem(
-            "acoustics",
-            AcousticsComp(
-                n_blades=rotor["n_blades"],
-                n_loads=n_loads(fidelity),
-                observers=options["observers"],
-                fidelity=fidelity,
-            ),
-            promotes=["*"],
+            "aerodynamics", aerodynamics(**rotor, loads=observers is not None), promotes=["*"]
+        )
+        if observers is not None:
+            self._add_noise(rotor["n_blades"])
+        elif options["broadband"]:
+            raise ValueError("broadband noise is heard at observers; there are none")
+
+    def _add_noise(self, n_blades: int) -> None:
+        options = self.options
+        heard = {name: options[name] for name in ("num_nodes", "observers", "fidelity")}
+        n = n_loads(options["fidelity"])
+        self.add_subsystem(
+            "acoustics", AcousticsComp(n_blades=n_blades, n_loads=n, **heard), promotes=["*"]
         )
         if options["broadband"]:
             self.add_subsystem(
                 "broadband",
-                BroadbandComp(
-                    propeller=propeller, observers=options["observers"], fidelity=fidelity
-                ),
+                BroadbandComp(propeller=options["propeller"], **heard),
                 promotes_inputs=[
                     "lattice_nodes",
                     "section_speed",

@@ -37,7 +37,7 @@ class RootComponent(JaxComponent):
 
     def __init__(self, **options: Any) -> None:
         super().__init__(**options)
-        self._found = LastPoints(self._solve)
+        self._found = LastPoints(self._solve, self.n_points)
 
     def solve(self, inputs: Arrays) -> Mapping[str, Any]:
         """Find the state.

@@ -10,7 +10,8 @@ import openmdao.api as om
 
 from propmdao.aerodynamics.polars import SectionPolars
 from propmdao.aerodynamics.trim import rotation_speed_by_interpolation
-from propmdao.components.jax_component import Arrays, JaxComponent
+from propmdao.components.jax_component import Arrays
+from propmdao.components.operating_points import STATIC, OperatingPointsComp
 from propmdao.components.section_inputs import add_section_inputs, section_grid, with_inputs
 from propmdao.components.trimmed_aerodynamics_comp import require_bounds
 from propmdao.fidelity import Fidelity
@@ -18,11 +19,12 @@ from propmdao.fidelity import Fidelity
 _RAD_PER_S = np.pi / 30.0
 
 
-class RotationSpeedComp(JaxComponent):
+class RotationSpeedComp(OperatingPointsComp):
     """Rotation speed at which the thrust, linear between two rotation speeds, is the required one.
 
     The rule of the thesis. It misses the thrust required by some per cent and is there to show by
-    how much; `TrimmedAerodynamicsComp` does not.
+    how much; `TrimmedAerodynamicsComp` does not. With `num_nodes` everything but the blade,
+    `lattice_nodes` and `section_polars`, has a leading axis of that many operating points.
 
     Inputs
     ------
@@ -33,7 +35,7 @@ class RotationSpeedComp(JaxComponent):
     density : float
         Air density, ``kg/m**3``.
     thrust_required : float
-        Thrust of all blades, ``N``.
+        Thrust of all blades, ``N``; of exactly 0 a propeller that stands still.
     section_polars, sound_speed
         With option `polars`: as `AerodynamicsComp` takes them.
 
@@ -44,6 +46,8 @@ class RotationSpeedComp(JaxComponent):
 
     Options
     -------
+    num_nodes : int or None
+        Number of operating points; None is a single one, with the shapes above.
     n_blades : int
         Number of equally spaced blades.
     radius : float
@@ -60,10 +64,11 @@ class RotationSpeedComp(JaxComponent):
     Raises
     ------
     om.AnalysisError
-        When the rotation speed is not between the two.
+        When the rotation speed is not between the two, with the node where there are several.
     """
 
     def initialize(self) -> None:
+        super().initialize()
         self.options.declare("n_blades", types=int, desc="Number of blades.")
         self.options.declare("radius", types=float, desc="Tip radius [m].")
         self.options.declare("fidelity", Fidelity(), types=Fidelity, desc="Numbers of panels.")
@@ -76,19 +81,22 @@ class RotationSpeedComp(JaxComponent):
         low, high = self.options["rpm_bounds"]
         fidelity = self.options["fidelity"]
         nodes = (fidelity.n_chordwise + 1, fidelity.n_spanwise + 1, 3)
-        self.add_input("lattice_nodes", shape=nodes, units="m")
-        self.add_input("speed", val=0.0, units="m/s")
-        self.add_input("density", val=1.225, units="kg/m**3")
-        self.add_input("thrust_required", val=1.0, units="N")
+        self.add_input("lattice_nodes", shape=nodes, units="m", tags=STATIC)
+        self.add_point_input("speed", val=0.0, units="m/s")
+        self.add_point_input("density", val=1.225, units="kg/m**3")
+        self.add_point_input("thrust_required", val=1.0, units="N")
         polars, grid = self.options["polars"], None
         if polars is not None:
             add_section_inputs(self, polars, fidelity.n_spanwise)
             grid = section_grid(polars, self.options["stall_delay"])
-        self.add_output("rpm", val=np.sqrt(low * high), units="rpm")
+        self.add_point_output("rpm", val=np.sqrt(low * high), units="rpm")
         bounds = jnp.array([self.options["radius"], low * _RAD_PER_S, high * _RAD_PER_S])
         self.function = _interpolated
         self.static = self.options["n_blades"]
         self.constants = bounds, grid
+
+    def at_rest(self, inputs: Arrays) -> bool:
+        return not inputs["thrust_required"].any()
 
     def check(self, inputs: Any, values: Any) -> None:
         low, high = self.options["rpm_bounds"]

@@ -5,27 +5,27 @@ from __future__ import annotations
 import dataclasses
 
 import jax.numpy as jnp
-import openmdao.api as om
 
 from propmdao.aerodynamics.polars import PolarTable, SectionPolars
 from propmdao.aerodynamics.section_laws import AIR_VISCOSITY, ViscousSections
 from propmdao.components.jax_component import Arrays
+from propmdao.components.operating_points import STATIC, OperatingPointsComp
 
 
-def add_section_inputs(component: om.ExplicitComponent, polars: SectionPolars, n: int) -> None:
+def add_section_inputs(component: OperatingPointsComp, polars: SectionPolars, n: int) -> None:
     """Declare the inputs that `with_inputs` reads.
 
     Parameters
     ----------
-    component : om.ExplicitComponent
+    component : OperatingPointsComp
         Component in its ``setup``.
     polars : SectionPolars
         Whose Reynolds numbers and angles the polars have.
     n : int
         Number of sections.
     """
-    component.add_input("section_polars", shape=(n, *polars.values.shape[3:]))
-    component.add_input("sound_speed", val=340.294, units="m/s")
+    component.add_input("section_polars", shape=(n, *polars.values.shape[3:]), tags=STATIC)
+    component.add_point_input("sound_speed", val=340.294, units="m/s")
 
 
 def section_grid(polars: SectionPolars, stall_delay: bool) -> ViscousSections:

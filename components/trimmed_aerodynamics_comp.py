@@ -28,7 +28,7 @@ class TrimmedAerodynamicsComp(AerodynamicsComp):
     Inputs
     ------
     thrust_required : float
-        Thrust of all blades, ``N``.
+        Thrust of all blades, ``N``; of exactly 0 a propeller that stands still.
     lattice_nodes, speed, density, section_polars, sound_speed
         As `AerodynamicsComp` takes them.
 
@@ -44,14 +44,14 @@ load_force, section_speed, section_lift_coefficient
     -------
     rpm_bounds : (float, float)
         Lowest and highest rotation speed [rpm].
-    n_blades, radius, fidelity, polars, stall_delay
+    num_nodes, loads, n_blades, radius, fidelity, polars, stall_delay
         As `AerodynamicsComp` takes them.
 
     Raises
     ------
     om.AnalysisError
         When the thrust is out of reach between the bounds, with the thrust at both, or the solution
-        does not converge, with the reason.
+        does not converge, with the reason and, where there are several, the node.
     """
 
     def initialize(self) -> None:
@@ -64,8 +64,11 @@ load_force, section_speed, section_lift_coefficient
         self.function, self.state, self.residual = _at_root, "rotation_speed", "missing_thrust"
 
     def _add_rotation_speed(self) -> None:
-        self.add_input("thrust_required", val=1.0, units="N")
-        self.add_output("rpm", val=np.sqrt(np.prod(self.options["rpm_bounds"])), units="rpm")
+        self.add_point_input("thrust_required", val=1.0, units="N")
+        self.add_point_output("rpm", val=np.sqrt(np.prod(self.options["rpm_bounds"])), units="rpm")
+
+    def at_rest(self, inputs: Arrays) -> bool:
+        return not inputs["thrust_required"].any()
 
     def solve(self, inputs: Arrays) -> Any:
         radius, grid = self.constants

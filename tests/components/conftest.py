@@ -167,3 +167,41 @@ def assert_directional():
         return d_inputs
 
     return check
+
+
+@pytest.fixture(scope="session")
+def assert_totals():
+    """``assert_totals(prob, of, {input: scale}, tolerances)``: totals of a Problem that has run.
+
+    Along a random direction for each input, whose entries are of the scale given, against
+    differences of fourth order at the best of several steps: the curvature of polars and of the
+    fits of broadband noise jumps in places, so that no one step suits all. The error is relative to
+    the largest; tolerances are 1e-6 unless given by output.
+    """
+
+    def check(prob, of, scales, tolerances=None):
+        totals = prob.compute_totals(of=of, wrt=list(scales))
+        rng = np.random.default_rng(5)
+        for name, scale in scales.items():
+            start = prob.get_val(name).copy()
+            along = scale * rng.standard_normal(start.shape)
+            errors = {one: [] for one in of}
+            exact = {one: totals[one, name] @ along.ravel() for one in of}
+            for step in (1.0, 0.3, 0.1, 0.03, 0.01, 1e-3, 1e-4):
+                at = {}
+                for k in (-2, -1, 1, 2):
+                    prob.set_val(name, start + k * step * along)
+                    prob.run_model()
+                    at[k] = {one: prob.get_val(one).copy().ravel() for one in of}
+                for one in of:
+                    slope = 8.0 * (at[1][one] - at[-1][one]) - at[2][one] + at[-2][one]
+                    largest = max(np.abs(exact[one]).max(), 1e-6 * np.abs(prob.get_val(one)).max())
+                    error = np.abs(slope / (12.0 * step) - exact[one]).max() / largest
+                    errors[one].append(error)
+            prob.set_val(name, start)
+            for one in of:
+                tolerance = (tolerances or {}).get(one, 1e-6)
+                assert min(errors[one]) < tolerance, f"{one} by {name}: {errors[one]}"
+        prob.run_model()
+
+    return check

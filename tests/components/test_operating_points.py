@@ -6,7 +6,7 @@ import pytest
 from numpy.testing import assert_allclose
 from openmdao.utils.assert_utils import assert_check_partials
 
-from propmdao.components import operating_points
+from propmdao.components.jax_component import FunctionDerivatives
 from propmdao.components.operating_points import STATIC, OperatingPointsComp
 
 
@@ -15,26 +15,36 @@ def _lift(inputs, constants, static):
     return {"lift": (q * inputs["area"].sum())[None], "share": q * inputs["area"]}
 
 
+def _lift_alone(inputs, constants, static):
+    return {"lift": _lift(inputs, constants, static)["lift"]}
+
+
 class Wing(OperatingPointsComp):
     """Lift of surfaces that fly at several speeds, and a constant."""
+
+    def initialize(self):
+        super().initialize()
+        self.options.declare("shares", True)
 
     def setup(self):
         self.add_point_input("speed", val=10.0, units="m/s")
         self.add_point_input("density", val=1.2, units="kg/m**3")
         self.add_input("area", val=np.array([1.0, 2.0, 3.0]), units="m**2", tags=STATIC)
         self.add_point_output("lift", units="N")
-        self.add_point_output("share", shape=(3,), units="N")
         self.add_output("gravity", val=9.81)
-        self.function = _lift
+        self.function = _lift_alone
+        if self.options["shares"]:
+            self.add_point_output("share", shape=(3,), units="N")
+            self.function = _lift
 
     def check(self, inputs, values):
         if inputs["speed"][0] > 300.0:
             raise om.AnalysisError("too fast")
 
 
-def problem(num_nodes, mode="auto"):
+def problem(num_nodes, mode="auto", **options):
     prob = om.Problem(reports=False)
-    prob.model.add_subsystem("comp", Wing(num_nodes=num_nodes), promotes=["*"])
+    prob.model.add_subsystem("comp", Wing(num_nodes=num_nodes, **options), promotes=["*"])
     prob.setup(mode=mode)
     return prob
 
@@ -52,9 +62,10 @@ def test_nodes_lead_what_belongs_to_an_operating_point(num_nodes, scalar, array)
     assert_allclose(prob.get_val("gravity"), 9.81)
 
 
+@pytest.mark.parametrize("shares", [True, False])
 @pytest.mark.parametrize("num_nodes", [None, 1, 3])
-def test_partials(num_nodes):
-    prob = problem(num_nodes)
+def test_partials(num_nodes, shares):
+    prob = problem(num_nodes, shares=shares)
     prob.set_val("speed", np.linspace(8.0, 12.0, num_nodes or 1))
     prob.run_model()
     data = prob.check_partials(out_stream=None, method="fd", form="central")
@@ -68,9 +79,9 @@ def test_points_without_a_seed_are_not_differentiated(mode, monkeypatch):
     prob.run_model()
     calls = []
     for name in ("forward", "reverse"):
-        product = getattr(operating_points, name)
+        product = getattr(FunctionDerivatives, name)
         monkeypatch.setattr(
-            operating_points, name, lambda *at, of=product: (calls.append(1), of(*at))[1]
+            FunctionDerivatives, name, lambda *at, of=product: (calls.append(1), of(*at))[1]
         )
     totals = prob.compute_totals(of=["lift"], wrt=["speed"])["lift", "speed"]
     assert_allclose(totals, np.diag(np.full(5, 72.0)))
@@ -86,3 +97,22 @@ def test_a_failure_names_its_node():
     alone.set_val("speed", 400.0)
     with pytest.raises(om.AnalysisError, match=r"compute\(\), too fast"):
         alone.run_model()
+
+
+def test_gradients_of_scalars_are_computed_once_at_a_point(monkeypatch):
+    prob = problem(3, "fwd", shares=False)
+    prob.set_val("speed", [8.0, 10.0, 12.0])
+    prob.run_model()
+    calls = []
+    reverse = FunctionDerivatives.reverse
+    monkeypatch.setattr(
+        FunctionDerivatives, "reverse", lambda *at: (calls.append(1), reverse(*at))[1]
+    )
+    for _ in range(2):
+        prob.compute_totals(of=["lift"], wrt=["speed", "density", "area"])
+        assert len(calls) == 3
+    prob.set_val("speed", [8.0, 11.0, 12.0])  # one of the points is another one
+    prob.run_model()
+    totals = prob.compute_totals(of=["lift"], wrt=["speed"])["lift", "speed"]
+    assert_allclose(totals, np.diag(6.0 * 1.2 * np.array([8.0, 11.0, 12.0])))
+    assert len(calls) == 4

@@ -1,0 +1,90 @@
+"""The lattice at nodes: derivatives with and without loads, what is solved anew, rest."""
+
+import numpy as np
+import openmdao.api as om
+import pytest
+from numpy.testing import assert_allclose
+
+from propmdao.components import AerodynamicsComp, RotationSpeedComp, TrimmedAerodynamicsComp
+
+AIR = {
+    "speed": np.array([8.0, 0.5]),
+    "density": np.array([1.225, 1.1]),
+    "sound_speed": np.array([340.294, 335.0]),
+}
+GIVEN = {
+    AerodynamicsComp: {"rpm": np.array([4200.0, 4600.0])},
+    TrimmedAerodynamicsComp: {"thrust_required": np.array([1.2, 2.0])},
+}
+SCALES = {
+    "lattice_nodes": 1e-5,
+    "section_polars": 1e-3,
+    "speed": 0.1,
+    "density": 1e-2,
+    "sound_speed": 1.0,
+    "rpm": 5.0,
+    "thrust_required": 0.01,
+}
+
+
+@pytest.fixture
+def problem(meshes, small, polars):
+    """Problem with a component of so many nodes at the given values."""
+
+    def problem(kind, num_nodes, values, **options):
+        if kind is not AerodynamicsComp:
+            options["rpm_bounds"] = (1000.0, 9000.0)
+        comp = kind(
+            n_blades=2, radius=0.1397, fidelity=small, polars=polars, num_nodes=num_nodes, **options
+        )
+        prob = om.Problem(reports=False)
+        prob.model.add_subsystem("comp", comp, promotes=["*"])
+        prob.setup()
+        for name in ("lattice_nodes", "section_polars"):
+            prob.set_val(name, meshes.get_val(name))
+        for name, value in values.items():
+            prob.set_val(name, value)
+        prob.run_model()
+        return prob
+
+    return problem
+
+
+FORWARD = pytest.param(True, marks=pytest.mark.slow)  # compiling it takes most of the time
+
+
+@pytest.mark.parametrize("loads", [False, FORWARD])
+@pytest.mark.parametrize("kind", [AerodynamicsComp, TrimmedAerodynamicsComp])
+def test_partials_at_nodes(problem, assert_directional, kind, loads):
+    """Without loads the forward products are sums over kept gradients, which compile nothing."""
+    prob = problem(kind, 2, {**AIR, **GIVEN[kind]}, loads=loads)
+    inputs = prob.model.comp.get_io_metadata(iotypes="input")
+    # the root is good to 1e-9 of itself, its differences to some 1e-6
+    assert_directional(prob, {name: SCALES[name] for name in inputs}, 1e-5, forward=True)
+
+
+@pytest.mark.parametrize("kind", [AerodynamicsComp, TrimmedAerodynamicsComp])
+def test_the_lattice_is_solved_anew_only_where_a_node_changed(problem, kind, monkeypatch):
+    prob = problem(kind, 2, {**AIR, **GIVEN[kind]})
+    solved = []
+    solve = prob.model.comp.solve
+    monkeypatch.setattr(prob.model.comp, "solve", lambda at: (solved.append(at), solve(at))[1])
+    prob.run_model()
+    assert not solved
+    before = prob.get_val("torque").copy()
+    prob.set_val("speed", [8.0, 1.0])
+    prob.run_model()
+    assert [at["speed"][0] for at in solved] == [1.0]
+    assert prob.get_val("torque")[0] == before[0]
+    assert prob.get_val("torque")[1] != before[1]
+
+
+def test_two_point_rule_at_nodes(problem):
+    thrust = np.array([1.2, 0.0, 2.0])
+    three = problem(RotationSpeedComp, 3, {"thrust_required": thrust, "speed": 8.0})
+    assert three.get_val("rpm")[1] == 0.0
+    for node in (0, 2):
+        one = problem(RotationSpeedComp, None, {"thrust_required": thrust[node], "speed": 8.0})
+        assert_allclose(three.get_val("rpm")[node], one.get_val("rpm")[0], rtol=1e-12)
+    with pytest.raises(om.AnalysisError, match="node 1: thrust 500 N needs .* rpm"):
+        problem(RotationSpeedComp, 2, {"thrust_required": [1.2, 500.0]})
