@@ -49,8 +49,9 @@ class OperatingPointsComp(JaxComponent):
     point, with OpenMDAO's own methods inputs that all of them share and outputs that never change.
     Its ``function`` knows of one point only. The points are gone through one by one: the compiled
     code is that of one point, whatever their number, so is the memory of an evaluation, and a point
-    that no seed touches is not differentiated. Where all outputs of a point are scalars, their
-    gradients are computed once and kept: missions ask for many products at the same points.
+    that no seed touches is not differentiated. A point that is differentiated keeps its
+    linearisation until its inputs change; where all its outputs are scalars, their gradients alone:
+    missions ask for many products at the same points.
 
     Options
     -------

@@ -1,0 +1,168 @@
+"""Climb of a small electric aeroplane that takes the least from its battery, with Dymos.
+
+The propeller is trimmed to the thrust at every node of the phase: vortex lattice, polars and
+derivatives inside the equations of motion. The optimiser chooses thrust and climb angle along the
+way, the time it takes, and, if asked, the blade's twist.
+"""
+
+import argparse
+from typing import Any
+
+import dymos as dm
+import numpy as np
+import openmdao.api as om
+
+from propmdao.components import PropellerGroup
+from propmdao.fidelity import Fidelity
+from propmdao.propeller import load_propeller
+
+MASS, WING_AREA, GRAVITY = 1.0, 0.25, 9.80665  # kg, m2, m/s2
+DRAG_AT_ZERO_LIFT, INDUCED_DRAG = 0.035, 0.05  # CD = CD0 + k CL^2
+KV, RESISTANCE, IDLE_CURRENT = 1000.0, 0.08, 0.8  # of motor and battery: rpm/V, ohm, A
+KT = 30.0 / (np.pi * KV)  # N m/A
+LARGEST_CURRENT, AVIONICS = 12.0, 4.0  # A; W
+HEIGHT = 60.0  # m, to climb
+PROPELLER, RADII = load_propeller("apcsf_11x4.7"), [0.15, 0.5, 1.0]  # of the twist's points
+FIDELITY = Fidelity(n_chordwise=4, n_spanwise=12)
+
+
+class Flight(om.Group):
+    """Equations of motion of the aeroplane with its propeller, at ``num_nodes`` points in time."""
+
+    def initialize(self) -> None:
+        """Declare what Dymos and the study choose."""
+        self.options.declare("num_nodes", types=int)
+        self.options.declare("fidelity", FIDELITY, types=Fidelity)
+
+    def setup(self) -> None:
+        """Connect propeller and flight mechanics."""
+        n = self.options["num_nodes"]
+        propeller = PropellerGroup(
+            propeller=PROPELLER,
+            num_nodes=n,
+            fidelity=self.options["fidelity"],
+            design_distributions={"beta": RADII},
+        )
+        self.add_subsystem("propeller", propeller, promotes=["*"])
+        pressure = f"(0.5 * density * speed**2 * {WING_AREA})"
+        lift = f"({MASS * GRAVITY} * cos(climb_angle))"
+        drag = f"({DRAG_AT_ZERO_LIFT} * {pressure} + {INDUCED_DRAG} * {lift}**2 / {pressure})"
+        mechanics = om.ExecComp(
+            [
+                f"acceleration = (thrust - {drag}) / {MASS} - {GRAVITY} * sin(climb_angle)",
+                "climb_rate = speed * sin(climb_angle)",
+                f"current = torque / {KT} + {IDLE_CURRENT}",
+                f"battery_power = (torque / {KT} + {IDLE_CURRENT}) * (rpm / {KV} + {RESISTANCE} "
+                f"* (torque / {KT} + {IDLE_CURRENT})) + {AVIONICS}",
+            ],
+            shape=(n,),
+            has_diag_partials=True,
+            thrust={"units": "N"},
+            density={"units": "kg/m**3"},
+            speed={"units": "m/s"},
+            climb_angle={"units": "rad"},
+            torque={"units": "N*m"},
+            rpm={"units": "rpm"},
+            current={"units": "A"},
+            acceleration={"units": "m/s**2"},
+            climb_rate={"units": "m/s"},
+            battery_power={"units": "W"},
+        )
+        self.add_subsystem("mechanics", mechanics, promotes=["*"])
+        self.set_input_defaults("density", np.full(n, 1.225), units="kg/m**3")
+        self.set_input_defaults("speed", np.full(n, 10.0), units="m/s")
+
+
+def mission(
+    height: float = HEIGHT,
+    segments: int = 4,
+    twist: bool = False,
+    fidelity: Fidelity = FIDELITY,
+) -> om.Problem:
+    """Climb at the least energy, set up and with a first guess.
+
+    Parameters
+    ----------
+    height : float
+        To climb [m].
+    segments : int
+        Of the collocation, three points each.
+    twist : bool
+        Whether the blade angles at three radii are design variables, too.
+    fidelity : Fidelity
+        Numbers of panels.
+
+    Returns
+    -------
+    om.Problem
+        Ready to run; its trajectory is ``trajectory.climb``.
+    """
+    driver = om.ScipyOptimizeDriver(optimizer="SLSQP", maxiter=60, tol=1e-6)
+    prob = om.Problem(driver=driver, reports=False)
+    phase = dm.Phase(
+        ode_class=Flight,
+        ode_init_kwargs={"fidelity": fidelity},
+        transcription=dm.Radau(num_segments=segments, order=3),
+    )
+    trajectory = prob.model.add_subsystem("trajectory", dm.Trajectory())
+    trajectory.add_phase("climb", phase)
+    phase.set_time_options(fix_initial=True, duration_bounds=(5.0, 120.0), duration_ref=20.0)
+    phase.add_state("height", rate_source="climb_rate", units="m", fix_initial=True, ref=height)
+    phase.add_state(
+        "speed", rate_source="acceleration", units="m/s", fix_initial=True, lower=7.0, upper=14.0,
+        ref=10.0,
+    )  # fmt: skip
+    phase.add_state("energy", rate_source="battery_power", units="kJ", fix_initial=True)
+    phase.add_control("thrust_required", units="N", lower=0.2, upper=8.0, ref=2.0)
+    phase.add_control("climb_angle", units="deg", lower=0.0, upper=30.0, ref=10.0)
+    phase.add_boundary_constraint("height", loc="final", equals=height, ref=height)
+    phase.add_boundary_constraint("speed", loc="final", lower=10.0, ref=10.0)
+    phase.add_path_constraint("current", upper=LARGEST_CURRENT, ref=LARGEST_CURRENT)
+    phase.add_timeseries_output(["rpm", "torque", "current", "battery_power", "efficiency"])
+    phase.add_objective("energy", loc="final")
+    if twist:
+        phase.add_parameter(
+            "beta_cp", units="deg", opt=True, static_targets=True, lower=[10, 8, 2],
+            upper=[35, 25, 15], ref=10.0,
+        )  # fmt: skip
+    prob.setup()
+    phase.set_time_val(initial=0.0, duration=0.4 * height)
+    phase.set_state_val("height", [0.0, height])
+    phase.set_state_val("speed", [10.0, 10.0])
+    phase.set_state_val("energy", [0.0, 0.05 * height])
+    phase.set_control_val("thrust_required", [3.2, 3.2])
+    phase.set_control_val("climb_angle", [14.5, 14.5])
+    if twist:
+        angles = np.interp(RADII, PROPELLER.r_over_R, PROPELLER.beta_deg)
+        phase.set_parameter_val("beta_cp", angles, units="deg")
+    return prob
+
+
+def main() -> None:
+    """Optimise and print the climb."""
+    parser = argparse.ArgumentParser(description=__doc__.split("\n\n")[0])
+    parser.add_argument("--height", type=float, default=HEIGHT, help="m, default %(default)s")
+    parser.add_argument("--twist", action="store_true", help="choose the blade angles, too")
+    given = parser.parse_args()
+    prob = mission(given.height, twist=given.twist)
+    prob.run_driver()
+    names = ("height", "speed", "thrust_required", "rpm", "current", "efficiency", "energy")
+    show(prob, names)
+    if given.twist:
+        angles = prob.get_val("trajectory.climb.parameter_vals:beta_cp", units="deg")
+        print(f"blade angles at r/R {RADII}: {np.round(angles.ravel(), 2)} deg")
+
+
+def show(prob: om.Problem, names: tuple[str, ...]) -> None:
+    """Print a table of the trajectory."""
+
+    def of(name: str) -> Any:
+        return prob.get_val(f"trajectory.climb.timeseries.{name}")[:, 0]
+
+    print(" ".join(f"{name:>11}" for name in ("time", *names)))
+    for row in zip(of("time"), *(of(name) for name in names), strict=True):
+        print(" ".join(f"{value:11.4g}" for value in row))
+
+
+if __name__ == "__main__":
+    main()
