@@ -2,8 +2,9 @@
 
 APC-SF 11x4.7 at three rotation speeds and five elevations, standing still: no free stream is made
 up and nothing is fitted. Beside it stand the errors that the thesis reports for these microphones,
-with a free stream of J 0.3. To tell loads from acoustics, the same tone is shown once more with the
-computed loads scaled to the thrust of the test and to the torque of the wind tunnel.
+with a free stream of J 0.3. To tell loads from acoustics, the same tone is shown twice more: with
+the one twist offset that gives the static thrust of the wind tunnel, and with the computed loads
+scaled to the thrust of the test and to the torque of the wind tunnel.
 """
 
 import argparse
@@ -28,10 +29,11 @@ from propmdao.geometry.meshes import blade_meshes, mesh_radii
 from propmdao.geometry.surface import surface_panels
 from propmdao.propeller import load_propeller
 from propmdao.records import PointLoads
-from propmdao.wind_tunnel import read_wind_tunnel
+from propmdao.wind_tunnel import calibrated_twist_deg, read_wind_tunnel
 
 PROPELLER = load_propeller("apcsf_11x4.7")
 MEASURED = Path(__file__).parent / "measurements" / "hover_noise_apcsf_11x4.7.toml"
+WIND_TUNNEL = MEASURED.with_name("uiuc_apcsf_11x4.7.toml")
 DENSITY = 1.18  # kg/m3: the test states none, with this its thrusts are those of the wind tunnel
 ARC = np.arange(-67.5, 68.0, 2.5)  # deg
 
@@ -44,8 +46,9 @@ class HoverTones:
     ----------
     rpm, elevation_deg : arrays
         Rotation speeds [rev/min], elevations of the microphones [deg].
-    spl_db, measured_db, scaled_db : (n_rpm, n_microphones) arrays
-        Computed, measured, and computed with the loads scaled to thrust and torque measured.
+    spl_db, measured_db, calibrated_db, scaled_db : (n_rpm, n_microphones) arrays
+        Computed, measured, computed with the twist offset, and computed with the loads scaled to
+        thrust and torque measured.
     thesis_db : (n_rpm, n_microphones) array
         Absolute errors of the thesis.
     loads, measured_loads : (n_rpm, 2) arrays
@@ -58,6 +61,7 @@ class HoverTones:
     elevation_deg: np.ndarray
     spl_db: np.ndarray
     measured_db: np.ndarray
+    calibrated_db: np.ndarray
     scaled_db: np.ndarray
     thesis_db: np.ndarray
     loads: np.ndarray
@@ -72,6 +76,12 @@ def hover_tones() -> HoverTones:
     known = measured_loads(rpm, test["thrust"])
     points = [(test["radius"], angle) for angle in (*elevation, *ARC)]
     found = [analyze(PROPELLER, rpm=speed, density=DENSITY, observers=points) for speed in rpm]
+    twist = calibrated_twist_deg(PROPELLER, read_wind_tunnel(WIND_TUNNEL).static)
+    turned = [
+        analyze(PROPELLER, rpm=speed, density=DENSITY, observers=points[: elevation.size],
+                twist_offset_deg=twist)
+        for speed in rpm
+    ]  # fmt: skip
     loads = np.array([(of.steady.thrust, of.steady.torque) for of in found])
     level = np.array([spl_db(of.tones.total[:, 0]) for of in found])
     scaled = [scaled_tone(of, *ratio) for of, ratio in zip(found, known / loads, strict=True)]
@@ -80,6 +90,7 @@ def hover_tones() -> HoverTones:
         elevation_deg=elevation,
         spl_db=level[:, : elevation.size],
         measured_db=np.array(test["blade_passage"]["spl_db"]),
+        calibrated_db=np.array([spl_db(of.tones.total[:, 0]) for of in turned]),
         scaled_db=np.array(scaled)[:, : elevation.size],
         thesis_db=np.array(test["thesis"]["absolute_error_db"]),
         loads=loads,
@@ -90,7 +101,7 @@ def hover_tones() -> HoverTones:
 
 def measured_loads(rpm: np.ndarray, test: dict[str, list[float]]) -> np.ndarray:
     """Thrust of the test [N] and torque of the wind tunnel [N m]; the test has no torque."""
-    static = read_wind_tunnel(MEASURED.parent / "uiuc_apcsf_11x4.7.toml").static
+    static = read_wind_tunnel(WIND_TUNNEL).static
     cp, n = np.interp(rpm, static.rpm, static.CP), rpm / 60.0
     torque = cp / (2.0 * np.pi) * DENSITY * n**2 * PROPELLER.diameter**5
     return np.stack([np.interp(rpm, test["rpm"], test["thrust"]), torque], axis=1)
@@ -120,18 +131,22 @@ def off_power_law_db(heard: HoverTones) -> float:
 def rows(heard: HoverTones) -> list[tuple[str, ...]]:
     """Table of errors at each microphone, its head first, mean and largest at the end."""
     head = ("rpm", "elevation, deg", "measured, dB", "computed, dB", "error, dB",
-            "measured loads: error, dB", "thesis: size of error, dB")  # fmt: skip
+            "calibrated: error, dB", "measured loads: error, dB",
+            "thesis: size of error, dB")  # fmt: skip
     table: list[tuple[str, ...]] = [head]
-    error, scaled = heard.spl_db - heard.measured_db, heard.scaled_db - heard.measured_db
+    error, turned, scaled = (
+        of - heard.measured_db for of in (heard.spl_db, heard.calibrated_db, heard.scaled_db)
+    )
     for i, rpm in enumerate(heard.rpm):
         for k, angle in enumerate(heard.elevation_deg):
             table.append(
                 (f"{rpm}", f"{angle:+.1f}", f"{heard.measured_db[i, k]:.2f}",
-                 f"{heard.spl_db[i, k]:.2f}", f"{error[i, k]:+.2f}", f"{scaled[i, k]:+.2f}",
-                 f"{heard.thesis_db[i, k]:.2f}")
+                 f"{heard.spl_db[i, k]:.2f}", f"{error[i, k]:+.2f}", f"{turned[i, k]:+.2f}",
+                 f"{scaled[i, k]:+.2f}", f"{heard.thesis_db[i, k]:.2f}")
             )  # fmt: skip
     for label, of in (("mean size", np.mean), ("largest", np.max)):
-        sizes = [f"{of(np.abs(values)):.2f}" for values in (error, scaled, heard.thesis_db)]
+        sizes = [f"{of(np.abs(values)):.2f}" for values in
+                 (error, turned, scaled, heard.thesis_db)]  # fmt: skip
         table.append((label, "", "", "", *sizes))
     return table
 

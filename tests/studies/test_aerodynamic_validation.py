@@ -94,7 +94,7 @@ def test_sensitivities_and_the_twist_each_point_needs(
     sensitivity.PITCH = {CASE: sensitivity.PITCH[CASE]}
     sensitivity.measurements = validation.measurements
     every = sensitivity.variants
-    chosen = {"nothing", "twist +1 deg", "wake at V + 1.5 w"}
+    chosen = {"nothing", "twist +1 deg", "drift of the wake x 1.5"}
     sensitivity.variants = lambda *of: (one for one in every(*of) if one[0] in chosen)
     printed = run(sensitivity, monkeypatch, capsys, tmp_path, "--quick")
     assert "n_crit is left out" in printed
@@ -108,7 +108,16 @@ def test_sensitivities_and_the_twist_each_point_needs(
     assert len(needed) == few.static.rpm.size + (few.dynamic.J <= 0.5).sum()
 
 
-def test_wake_at_v_plus_w_is_the_solver_s_own(few_points, study):
+def test_prescribed_wake_has_the_thrust_of_the_one_that_moves_as_it_says(study):
+    transport = study("wake_transport")
+    (row,) = transport.compare([(CASE, 2, 0.0)], steps=12)
+    assert abs(row["CT, %"]) < 1.5 and abs(row["CP, %"]) < 2.0
+    assert row["before"] == pytest.approx(0.35, abs=0.05)
+    assert row["after"] == pytest.approx(1.0, abs=0.1)
+    assert 1.1 < row["P/ideal"] < 1.2  # as rotors have it
+
+
+def test_wake_of_the_sensitivities_is_the_solver_s_own(few_points, study):
     _, few = few_points
     sensitivity = study("aerodynamic_sensitivity")
     propeller = load_propeller(CASE)

@@ -29,22 +29,29 @@ def heard(study):
     return study.hover_tones()
 
 
-def test_levels_at_blade_passage_are_two_decibels_low(heard):
+def test_levels_at_blade_passage_are_three_decibels_low(heard):
     error = heard.spl_db - heard.measured_db
-    assert 1.85 < np.abs(error).mean() < 2.15
+    assert 2.7 < np.abs(error).mean() < 3.05
     assert error.mean() == pytest.approx(-np.abs(error).mean())  # everywhere too quiet
-    assert 3.4 < np.abs(error).max() < 3.75
+    assert 4.15 < np.abs(error).max() < 4.5
 
 
-def test_loads_that_fall_short_are_half_of_that(heard):
-    # Thrust 3 to 9 % and torque 10 to 17 % short; with the measured ones the rest is this.
+def test_loads_that_fall_short_are_two_thirds_of_that(heard):
+    # Thrust 12 to 17 % and torque 20 to 25 % short; with the measured ones the rest is this.
     short = heard.loads / heard.measured_loads - 1.0
-    assert short[:, 0] == pytest.approx([-0.028, -0.053, -0.091], abs=0.01)
-    assert short[:, 1] == pytest.approx([-0.101, -0.132, -0.169], abs=0.01)
+    assert short[:, 0] == pytest.approx([-0.121, -0.139, -0.169], abs=0.01)
+    assert short[:, 1] == pytest.approx([-0.205, -0.226, -0.251], abs=0.01)
     error = heard.scaled_db - heard.measured_db
     assert 0.85 < np.abs(error).mean() < 1.1
     assert 2.5 < np.abs(error).max() < 2.9
     assert np.abs(error[1]).max() < 1.0  # 4200 rpm
+
+
+def test_twist_that_gives_the_wind_tunnels_static_thrust_brings_most_of_that_back(heard):
+    error = heard.calibrated_db - heard.measured_db
+    assert 1.05 < np.abs(error).mean() < 1.35
+    assert 2.6 < np.abs(error).max() < 2.9
+    assert np.abs(error[1]).max() < 1.1  # 4200 rpm
 
 
 def test_measured_levels_are_not_those_of_a_smooth_law(study, heard):

@@ -65,6 +65,21 @@ def measured(reference_data):
     )
 
 
+def test_third_octaves_with_the_thrust_of_the_wind_tunnel(measured):
+    # One twist offset, fitted to the wind tunnel's static thrust and to no noise.
+    observers = [(DISTANCE, elevation) for elevation in ELEVATIONS]
+    turned = analyze(
+        load_propeller("apcsf_11x4.7"), rpm=RPM, density=DENSITY, broadband=True,
+        observers=observers, twist_offset_deg=2.25,
+    )  # fmt: skip
+    assert 0.97 < float(turned.steady.thrust) / 4.037 < 1.02
+    heard = np.asarray(level_db(turned.broadband.total))
+    low, high = np.searchsorted(BANDS_HZ, (490, 10100))
+    found = error(heard[:, low:high], measured)
+    assert 1.3 < found[0] < 2.0
+    assert 2.8 < found[1] < 3.4
+
+
 def of_strips(strips, angle=0.0, trip="none"):
     """Levels with every angle from zero lift changed by so much [rad]."""
     section = strips.section
@@ -82,15 +97,15 @@ def error(level, measured):
 
 
 def test_thrust(hover):
-    assert 0.92 < float(hover.steady.thrust) / 4.037 < 0.97
+    assert 0.84 < float(hover.steady.thrust) / 4.037 < 0.88
 
 
 def test_third_octaves_from_500_hz_to_10_khz(hover, measured):
     heard = np.asarray(level_db(hover.broadband.total))
     low, high = np.searchsorted(BANDS_HZ, (490, 10100))
     found = error(heard[:, low:high], measured)
-    assert 1.4 < found[0] < 2.1
-    assert 2.6 < found[1] < 3.4
+    assert 3.3 < found[0] < 3.9
+    assert 4.4 < found[1] < 5.0
 
 
 def test_level_together_is_within_two_decibels(hover, measured):
@@ -100,11 +115,11 @@ def test_level_together_is_within_two_decibels(hover, measured):
     assert np.all(np.abs(off) < 2.0)
 
 
-def test_tripped_boundary_layers_are_too_loud(strips, measured):
-    # The model as it runs, untripped, is the better of the two: nobody tripped the blades.
+def test_tripped_boundary_layers_make_up_for_missing_thrust(strips, measured):
+    # Nobody tripped the blades; tripped ones would be louder where the measured thrust is met.
     found = error(of_strips(strips, trip="heavy"), measured)
-    assert 3.1 < found[0] < 3.9
-    assert 3.7 < found[1] < 4.5
+    assert 2.6 < found[0] < 3.2
+    assert 4.0 < found[1] < 4.7
 
 
 @pytest.mark.parametrize(("degrees", "low", "high"), [(-1.0, -2.9, -1.8), (1.0, 2.0, 3.2)])

@@ -3,8 +3,9 @@
 Every third static point and every sixth with flight speed of the UIUC measurements. The numbers are
 the errors found; each is held from both sides, so that a change for the better is noticed as well.
 Aimed at, as published: static CT 8 %, static CP 12 %, CT to J 0.5 8 %; calibrated, to J 0.5: CT
-2.5 %, CP 8 %; slope of static CT over rotation speed at least half the measured one. Of the slow
-flyers only the static ones are met; docs/verification.md says what limits the others.
+2.5 %, CP 8 %; slope of static CT over rotation speed at least half the measured one. The slow
+flyers meet the calibrated ones and the slope, and miss those of the published geometry;
+docs/verification.md says what limits them.
 """
 
 import dataclasses
@@ -26,16 +27,16 @@ MEASURED = Path(__file__).parents[2] / "studies" / "measurements"
 # Mean absolute errors in per cent: static CT, CP of each point; CT, CP to J 0.5 and beyond of the
 # static coefficient; ratio of the slopes of static CT. The twist offset in degrees.
 PUBLISHED = {
-    "apcsf_11x4.7": ((4.7, 11.8), (15.8, 15.7), (8.7, 15.2), 0.45),
-    "apcsf_11x4.7_thesis": ((11.8, 22.7), (19.7, 29.5), (10.2, 43.9), 0.41),
-    "apcsf_10x4.7": ((4.2, 11.8), (13.2, 15.4), (17.3, 19.6), 0.41),
-    "apce_10x7": ((15.5, 2.5), (3.4, 2.0), (7.2, 7.2), 1.03),
+    "apcsf_11x4.7": ((13.5, 22.2), (20.0, 21.4), (15.0, 23.2), 0.56),
+    "apcsf_11x4.7_thesis": ((18.2, 29.9), (22.4, 33.1), (14.0, 49.1), 0.48),
+    "apcsf_10x4.7": ((12.0, 22.0), (17.7, 21.6), (22.1, 26.2), 0.50),
+    "apce_10x7": ((8.4, 9.5), (3.1, 4.7), (4.2, 3.0), 1.22),
 }
 CALIBRATED = {
-    "apcsf_11x4.7": (0.64, (10.4, 9.6)),
-    "apcsf_11x4.7_thesis": (1.79, (6.5, 11.8)),
-    "apcsf_10x4.7": (0.43, (9.9, 11.4)),
-    "apce_10x7": (-3.52, (18.7, 26.4)),
+    "apcsf_11x4.7": (2.25, (2.0, 1.8)),
+    "apcsf_11x4.7_thesis": (3.18, (1.8, 3.4)),
+    "apcsf_10x4.7": (2.09, (2.8, 2.5)),
+    "apce_10x7": (-2.11, (13.7, 21.0)),
 }
 WITHIN = 0.7  # per cent
 
@@ -76,12 +77,9 @@ def test_calibrated_on_static_thrust_alone(name):
     assert sizes(after.low_ct, after.low_cp) == pytest.approx(low, abs=WITHIN)
 
 
-def test_slow_flyer_in_hover_wants_twist_that_grows_with_the_square_of_rotation_speed():
-    # As a blade does that its load twists; the polars' Reynolds number alone gives less than half
-    # of the measured trend.
+def test_slow_flyer_in_hover_wants_more_twist_the_faster_it_turns():
+    # The polars' Reynolds number alone gives a good half of the measured trend.
     static = measured("apcsf_11x4.7").static
     propeller = load_propeller("apcsf_11x4.7")
     needed = [calibrated_twist_deg(propeller, static[i : i + 1]) for i in (0, 2, 5)]
-    assert needed == pytest.approx([-0.15, 0.31, 1.78], abs=0.15)
-    per_square = np.diff(needed) / np.diff(static.rpm[[0, 2, 5]] ** 2)
-    assert per_square[1] / per_square[0] == pytest.approx(1.14, abs=0.15)
+    assert needed == pytest.approx([1.73, 1.85, 3.32], abs=0.15)
