@@ -30,6 +30,7 @@ from low_noise_design import BASELINE
 from propmdao.acoustics.observers import arc
 from propmdao.comparison import Rows
 from propmdao.components import NoiseObjectiveComp, PropellerGroup
+from propmdao.fidelity import Fidelity
 from propmdao.naca_blade import with_naca_sections
 from propmdao.propeller import Propeller
 
@@ -69,7 +70,9 @@ def free_indices(name: str) -> list[int]:
     return list(range(1 if name == "sweep_over_R" else 0, AT.size))
 
 
-def build_problem(objective: str, torque_limit: float, noise_limit: float) -> om.Problem:
+def build_problem(
+    objective: str, torque_limit: float, noise_limit: float, fidelity: Fidelity | None = None
+) -> om.Problem:
     """Blade to soft maxima, with design variables, constraints and one of `OBJECTIVES`.
 
     Parameters
@@ -78,6 +81,8 @@ def build_problem(objective: str, torque_limit: float, noise_limit: float) -> om
         Which of `OBJECTIVES` is minimised; the other must not exceed the limit.
     torque_limit, noise_limit : float
         Of the baseline [N m], [dB] or [dBA].
+    fidelity : Fidelity, optional
+        By default that of the thesis' problem.
 
     Returns
     -------
@@ -89,7 +94,7 @@ def build_problem(objective: str, torque_limit: float, noise_limit: float) -> om
     blade = PropellerGroup(
         propeller=thesis.START,
         observers=arc(thesis.DISTANCE, MICROPHONES),
-        fidelity=thesis.FIDELITY,
+        fidelity=fidelity or thesis.FIDELITY,
         broadband=True,
         design_distributions=dict.fromkeys(BOUNDS, AT),
         spline_method="cubic",  # linear in its control points: Akima's kinks would be the blade's

@@ -21,6 +21,7 @@ from typing import NamedTuple
 import free_form_blade as free_form
 import low_noise_design as thesis
 import numpy as np
+import openmdao.api as om
 
 from propmdao import acoustic_plots, directivity_plots, optimisation_plots, plots
 from propmdao.acoustics.levels import level_db, level_dba, oaspl_db
@@ -34,7 +35,7 @@ from propmdao.fidelity import Fidelity
 from propmdao.propeller import Propeller
 from propmdao.self_noise import BANDS_HZ
 
-QUICK = Fidelity(n_chordwise=4, n_spanwise=12, n_contour=21, n_surface_span=20, n_harmonics=4)
+COARSE = Fidelity(n_chordwise=4, n_spanwise=12, n_contour=21, n_surface_span=20, n_harmonics=4)
 TOLERANCE = 1e-4  # of a constraint in driver scaling
 ROWS: tuple[Row, ...] = (
     ("rotation speed, rpm", "rpm", ".0f"),
@@ -112,8 +113,13 @@ class Results(NamedTuple):
     contributions: dict[str, Rows]
 
     def columns(self) -> dict[str, dict[str, Cell]]:
-        """Table of the blades, by their names."""
+        """What the table shows, by blade."""
         return {name: column(self.blades[name], of) for name, of in self.analyses.items()}
+
+
+def control_points(prob: om.Problem) -> dict[str, np.ndarray]:
+    """Control points of a free-form blade by distribution."""
+    return {name: prob.get_val(f"{name}_cp").copy() for name in free_form.BOUNDS}
 
 
 def design(output: Path, evolution: int = 0) -> Results:
@@ -136,13 +142,17 @@ def design(output: Path, evolution: int = 0) -> Results:
     six = {name: prob.get_val(f"{name}_cp") for name in thesis.BOUNDS}
     blades["six variables"] = thesis.naca_blade("six_variables", six, output)
     for objective, other in (("tones", "total"), ("total", "tones")):
-        prob = free_form.build_problem(objective, torque, float(before[other] or 0.0))
-        start = {name: prob.get_val(f"{name}_cp") for name in free_form.BOUNDS}
-        name = f"quiet {objective}"
+        name, limits = f"quiet {objective}", (torque, float(before[other] or 0.0))
+        # On coarse meshes most of the way costs little; on the fine ones the last steps.
+        coarse = free_form.build_problem(objective, *limits, COARSE)
+        start = control_points(coarse)
+        searches[f"{name}, coarse"] = run_slsqp(coarse, output / f"{objective}_coarse.sql")
+        prob = free_form.build_problem(objective, *limits)
+        for point, value in control_points(coarse).items():
+            prob.set_val(f"{point}_cp", value)
         searches[name] = run_slsqp(prob, output / f"{objective}.sql")
         blades[name] = free_form.write_blade(prob, f"quiet_{objective}", output)
-        best = {name: prob.get_val(f"{name}_cp") for name in free_form.BOUNDS}
-        contributions[name] = free_form.contributions(prob, start, best)
+        contributions[name] = free_form.contributions(prob, start, control_points(prob))
     analyses |= {name: evaluate(blade) for name, blade in blades.items() if name not in analyses}
     return Results(blades, analyses, searches, contributions)
 
@@ -172,7 +182,7 @@ def draw(results: Results, output: Path) -> None:
 def main() -> None:
     """Search, print the tables, write the files."""
     parser = argparse.ArgumentParser(description=__doc__.split("\n\n")[0])
-    parser.add_argument("--quick", action="store_true", help="coarse meshes")
+    parser.add_argument("--quick", action="store_true", help="coarse meshes only")
     parser.add_argument("--evolution", type=int, default=0, metavar="N",
                         help="designs of differential evolution before SLSQP")  # fmt: skip
     parser.add_argument("--output", type=Path, default="results/gradient_design",
@@ -181,7 +191,7 @@ def main() -> None:
     output = options.output.absolute()
     output.mkdir(parents=True, exist_ok=True)
     if options.quick:
-        thesis.FIDELITY = QUICK
+        thesis.FIDELITY = COARSE
 
     results = design(output, options.evolution)
     print_comparison(ROWS, results.columns(), output / "gradient_design.csv")
