@@ -26,6 +26,7 @@ class RootComponent(JaxComponent):
     - ``function``: takes the state, a number (1,), among its inputs, and returns the residual, also
       (1,), among its outputs; both names are no variables of the component;
     - ``state``, ``residual``: these two names;
+    - ``of_state``: outputs (1,) that are the state in other units, with what it is multiplied by;
     - ``solve``: finds the state.
 
     Derivatives are those of the implicit function: with the function linearised once at the root,
@@ -34,6 +35,7 @@ class RootComponent(JaxComponent):
 
     state: str
     residual: str
+    of_state: Mapping[str, float] = {}
 
     def __init__(self, **options: Any) -> None:
         super().__init__(**options)
@@ -67,7 +69,7 @@ class RootComponent(JaxComponent):
         shapes = self.output_shapes()
         function = self.function, self.static, self.constants
         of_function = FunctionDerivatives(*function, at, (*shapes, self.residual))
-        return _AtRoot(of_function, shapes, self.state, self.residual)
+        return _AtRoot(of_function, shapes, self.state, self.residual, self.of_state)
 
     def _solve(self, inputs: Arrays) -> Mapping[str, Any]:
         values = self.solve(inputs)
@@ -78,9 +80,16 @@ class RootComponent(JaxComponent):
 class _AtRoot:
     """Derivatives of the implicit function: dx = -(r_p dp) / r_x with the residual r(p, x) = 0."""
 
-    def __init__(self, of_function: Derivatives, shapes: Shapes, state: str, residual: str) -> None:
+    def __init__(
+        self,
+        of_function: Derivatives,
+        shapes: Shapes,
+        state: str,
+        residual: str,
+        of_state: Mapping[str, float],
+    ) -> None:
         self._function, self._shapes = of_function, shapes
-        self._state, self._residual = state, residual
+        self._state, self._residual, self._of_state = state, residual, of_state
 
     def forward(self, seeds: Arrays) -> Mapping[str, Any]:
         by_inputs, by_state = self._gradient_of_residual
@@ -90,7 +99,11 @@ class _AtRoot:
 
     def reverse(self, seeds: Arrays) -> Mapping[str, Any]:
         by_inputs, by_state = self._gradient_of_residual
-        products, by_root = self._pull(seeds, 0.0)
+        if any(np.any(seed) for name, seed in seeds.items() if name not in self._of_state):
+            products, by_root = self._pull(seeds, 0.0)
+        else:  # the root alone is asked for
+            products = {name: np.zeros_like(value) for name, value in by_inputs.items()}
+            by_root = sum(scale * seeds[n].item() for n, scale in self._of_state.items())
         factor = -by_root / by_state
         return {name: value + factor * by_inputs[name] for name, value in products.items()}
 

@@ -62,6 +62,7 @@ load_force, section_speed, section_lift_coefficient
         require_bounds(self.options["rpm_bounds"])
         super().setup()
         self.function, self.state, self.residual = _at_root, "rotation_speed", "missing_thrust"
+        self.of_state = {"rpm": 1.0 / _RAD_PER_S}
 
     def _add_rotation_speed(self) -> None:
         self.add_point_input("thrust_required", val=1.0, units="N")
