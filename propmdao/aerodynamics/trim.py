@@ -136,7 +136,7 @@ def steady_for_thrust(
         As `rotation_speed_for_thrust`.
     """
     asked = _asked(nodes, n_blades, radius, speed, density, thrust_required, bounds, sections)
-    omega, missing, solution = _solve_trimmed(*asked)
+    omega, missing, solution = solve_trimmed(*asked)
     _require_reached(omega, missing, asked)
     return omega, solution
 
@@ -244,14 +244,14 @@ def solve_rotation_speed(
         The root, exactly differentiable, means nothing unless the thrust missing is positive
         at `low` and negative at `high` [rad/s], [N].
     """
-    omega, missing, _ = _solve_trimmed(
+    omega, missing, _ = solve_trimmed(
         nodes, n_blades, radius, speed, density, thrust_required, low, high, sections
     )
     return omega, missing
 
 
 @partial(jax.jit, static_argnames="n_blades")
-def _solve_trimmed(
+def solve_trimmed(
     nodes: Array,
     n_blades: int,
     radius: Scalar,
@@ -262,7 +262,18 @@ def _solve_trimmed(
     high: Scalar,
     sections: ViscousSections | None = None,
 ) -> tuple[Array, tuple[Array, Array], SteadySolution]:
-    """Rotation speed, thrust missing at the bounds, and the loads."""
+    """Rotation speed for a thrust, the thrust missing at either bound, and the loads.
+
+    Parameters
+    ----------
+    nodes, n_blades, radius, speed, density, thrust_required, low, high, sections
+        As `solve_rotation_speed` takes them.
+
+    Returns
+    -------
+    rotation_speed, missing, solution : float, (float, float), SteadySolution
+        As of `solve_rotation_speed`, and the loads at that rotation speed.
+    """
     # The rotation speed in here is that of no trial yet.
     flow = flow_at(nodes, n_blades, radius, low, speed, density, sections)
 
