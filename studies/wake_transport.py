@@ -59,8 +59,8 @@ def relaxed(propeller: Propeller, speed: float, steps: int = STEPS) -> dict[str,
         wake.core_radius(jnp.asarray(WAKE_AGES), omega, AIR_VISCOSITY, of * radius)
         for of in (BOUND_CORE, CORE)
     )
-    trailing, time = np.asarray(lattice.rings.corner[-1]), WAKE_AGES / omega
-    r0 = np.hypot(trailing[:, 0], trailing[:, 1])
+    trailing, ages, time = lattice.rings.corner[-1], jnp.asarray(WAKE_AGES), WAKE_AGES / omega
+    r0 = np.hypot(*np.asarray(trailing[:, :2]).T)
     outward = np.asarray(wake.outer_part(r0 / radius))
     inside = (1.0 - outward) * (r0 > 0.35 * radius) * np.gradient(r0) * r0  # area, without the hub
 
@@ -69,7 +69,7 @@ def relaxed(propeller: Propeller, speed: float, steps: int = STEPS) -> dict[str,
     drift = np.stack([rigid, rigid, np.ones_like(time)])  # of outer, inner part, and contraction
     for _ in range(steps):
         axial = outward[:, None] * drift[0] + (1.0 - outward)[:, None] * drift[1]
-        sheets = wake.helices(trailing, WAKE_AGES, n_blades, axial, drift[2])
+        sheets = wake.helices(trailing, ages, n_blades, axial, drift[2])
         loads = _loads(lattice, sheets, core, omega, speed, induced, DENSITY, None)
         thrust, torque = n_blades * float(loads.thrust), n_blades * float(loads.torque)
         induced = float(
