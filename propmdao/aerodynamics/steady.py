@@ -35,7 +35,7 @@ from propmdao.records import PointLoads, Scalar, record
 
 # Six turns from 10 deg steps at the blade to 30 deg. Against sixteen turns at 2 to 10 deg, with
 # seven times the segments: thrust and torque within 0.15 %, in hover, where the wake leaves slowly,
-# 1.3 % and 0.7 % (docs/verification.md).
+# 1.4 % and 0.9 % (docs/verification.md).
 WAKE_AGES = wake_azimuths(
     turns=6.0, first_step=np.radians(10.0), growth=1.1, last_step=np.radians(30.0)
 )
