@@ -77,9 +77,12 @@ class Line:
         self(position)
         wrt = [f"{name}_cp" for name in free_form.BOUNDS]
         totals = self._prob.compute_totals(list(RESPONSES), wrt, driver_scaling=False)
-        # Totals are by radians.
-        per_unit = [np.pi / 180.0 if free_form.units(name) else 1.0 for name in free_form.BOUNDS]
-        along = np.repeat(per_unit, free_form.AT.size) * self._along
+        # Totals are by what is free, and by radians.
+        parts = np.split(self._along, len(wrt))
+        along = np.concatenate([
+            part[free_form.free_indices(name)] * (np.pi / 180.0 if free_form.units(name) else 1.0)
+            for name, part in zip(free_form.BOUNDS, parts, strict=True)
+        ])  # fmt: skip
         return np.array([
             np.concatenate([totals[of, name][k] for name in wrt]) @ along
             for of, (k, _) in RESPONSES.items()
