@@ -38,7 +38,7 @@ def test_one_blade_for_all_is_all_blades_solved(slow_flyer):
         row = []
         for of in rings:
             influence = blade_influence(at.collocation, of, 1, radius)
-            wake = helical_wake(of.corner[-1], ages, 1, radius, OMEGA, SPEED, INDUCED)
+            wake = helical_wake(of.corner[-1], ages, B, radius, OMEGA, SPEED, INDUCED)[:, :1]
             influence = influence.at[:, -1].add(wake_influence(at.collocation, wake, core))
             row.append(jnp.einsum("cijp,pc->pij", influence, at.normal).reshape(18, 18))
         rows.append(row)
