@@ -47,7 +47,8 @@ def plane():
 
 def test_it_finds_the_optimum_and_says_how(plane, tmp_path):
     history, seconds, compiling = run_slsqp(plane, tmp_path / "cases.sql")
-    assert_allclose([plane.get_val("x")[0], plane.get_val("y")[0]], 2.0, atol=1e-4)
+    # f = 4 + (x - 2)^2 / 2 along the constraint: its tolerance of 1e-5 leaves x its root
+    assert_allclose([plane.get_val("x")[0], plane.get_val("y")[0]], 2.0, atol=5e-3)
     assert seconds > 0.0 and compiling > 0.0
     assert_allclose(history.objective[0], 5.0)  # the start, which meets the constraints
     assert (history.violation[0], history.constraint[0]) == (0.0, "")
