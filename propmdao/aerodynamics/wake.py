@@ -5,12 +5,12 @@ Momentum theory gives the induced velocity w at the disk from the thrust,
     T = 2 rho A w (V + w)                                           (Glauert 1935, eq. I 1.13)
 
 and V + 2 w far downstream, where the stream has contracted by continuity. The sheet that a blade
-leaves has two parts, as Landgrebe (1972) saw them in hover. The inner one is carried by the air
-inside the stream, here at V + 2 w. The outer one rolls up into the tip vortex on the edge of the
-stream: until the next of the B blades passes over it, it moves slowly, V + 0.7 w / B, and then at
-the mean of both sides of the edge, V + w. Landgrebe's correlation for hover also has a first speed
-that falls with the number of blades (as CT over solidity) and a second one near w for twisted
-blades.
+leaves has two parts, as Landgrebe saw them in hover (J. American Helicopter Society 17(4), 1972).
+The inner one is carried by the air inside the stream, here at V + 2 w. The outer one rolls up into
+the tip vortex on the edge of the stream: until the next of the B blades passes over it, it moves
+slowly, V + 0.7 w / B, and then at the mean of both sides of the edge, V + w. His correlation, too,
+has a first speed that falls with the number of blades (as CT over solidity) and a second one near w
+for twisted blades.
 
 The numbers 0.7, 1 and 2 are those at which sheets in hover move as they themselves and the blades
 induce: `studies/wake_transport.py` lets the two parts drift until they do, with two to four
