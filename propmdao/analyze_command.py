@@ -10,16 +10,16 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from propmdao.command_options import (
+    add_command,
     add_operating_point,
     add_propeller,
     number,
-    take_negative_ranges,
 )
 from propmdao.json_output import print_json
 from propmdao.observer_options import (
+    add_broadband,
     add_observers,
     add_surroundings,
-    add_trip,
     observers_of,
     require_broadband,
     surroundings_of,
@@ -65,16 +65,14 @@ def add_analyze(commands: argparse._SubParsersAction[Any]) -> None:
     commands : argparse subparsers
         What it is added to.
     """
-    command = commands.add_parser(
+    command = add_command(
+        commands,
         "analyze",
-        help="thrust, torque and noise at given rpm or thrust",
-        description=DESCRIPTION,
-        epilog=EXAMPLES,
-        formatter_class=argparse.RawDescriptionHelpFormatter,
-        allow_abbrev=False,
+        _analyze,
+        "thrust, torque and noise at given rpm or thrust",
+        DESCRIPTION,
+        EXAMPLES,
     )
-    take_negative_ranges(command)
-    command.set_defaults(command=_analyze)
     add_propeller(command)
     add_operating_point(command, several_rpm=True)
     command.add_argument(
@@ -92,10 +90,7 @@ def add_analyze(commands: argparse._SubParsersAction[Any]) -> None:
         help="polars of an airfoil of the propeller: files of XFOIL or XFLR5, one per Reynolds"
         " number, or one C81 file (ending .c81); may be repeated for other airfoils",
     )
-    command.add_argument(
-        "--broadband", action="store_true", help="add the broadband self-noise to the tones"
-    )
-    add_trip(command)
+    add_broadband(command)
     command.add_argument("--json", action="store_true", help="print JSON instead of tables")
     add_observers(command)
     add_surroundings(command)

@@ -1,10 +1,11 @@
-"""Options that commands share: the propeller and its operating point; values of options."""
+"""What commands share: how they are set up, the propeller, its operating point, values."""
 
 from __future__ import annotations
 
 import argparse
 import math
 import re
+from collections.abc import Callable
 from typing import Any
 
 MAX_RPM_VALUES = 1000
@@ -17,6 +18,47 @@ OPERATING_POINT = {
     "--rho": ("KG_M3", "air density [kg/m3], default 1.225"),
     "--twist-offset": ("DEG", "added to the blade angle everywhere [deg], default 0"),
 }
+
+
+def add_command(
+    commands: argparse._SubParsersAction[Any],
+    name: str,
+    run: Callable[[argparse.Namespace], None],
+    summary: str,
+    description: str,
+    examples: str,
+) -> argparse.ArgumentParser:
+    """Add a command to the program.
+
+    Parameters
+    ----------
+    commands : argparse subparsers
+        Of the program.
+    name : str
+        What is typed.
+    run : callable
+        Gets what was typed; raises ValueError on bad input.
+    summary : str
+        Its line in the help of the program.
+    description, examples : str
+        Its own help, before and after the options, with the line breaks as they are.
+
+    Returns
+    -------
+    argparse.ArgumentParser
+        To add arguments to; values such as -2:4:0.5 may follow its options.
+    """
+    command = commands.add_parser(
+        name,
+        help=summary,
+        description=description,
+        epilog=examples,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+        allow_abbrev=False,
+    )
+    take_negative_ranges(command)
+    command.set_defaults(command=run)
+    return command
 
 
 def number(text: str) -> float:

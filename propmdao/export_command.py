@@ -8,10 +8,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from propmdao.command_options import (
+    add_command,
     add_operating_point,
     add_propeller,
     number,
-    take_negative_ranges,
 )
 from propmdao.observer_options import add_observers, observers_of
 
@@ -49,16 +49,14 @@ def add_export(commands: argparse._SubParsersAction[Any]) -> None:
     commands : argparse subparsers
         What it is added to.
     """
-    command = commands.add_parser(
+    command = add_command(
+        commands,
         "export",
-        help="the blade as STL, TOML, CSV, section coordinates or PSU-WOPWOP case",
-        description=DESCRIPTION,
-        epilog=EXAMPLES,
-        formatter_class=argparse.RawDescriptionHelpFormatter,
-        allow_abbrev=False,
+        _export,
+        "the blade as STL, TOML, CSV, section coordinates or PSU-WOPWOP case",
+        DESCRIPTION,
+        EXAMPLES,
     )
-    take_negative_ranges(command)
-    command.set_defaults(command=_export)
     add_propeller(command)
     command.add_argument(
         "--to", type=Path, required=True, metavar="FILE", help="what is written or replaced"

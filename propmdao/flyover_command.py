@@ -11,10 +11,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from propmdao.command_options import (
+    add_command,
     add_operating_point,
     add_propeller,
     number,
-    take_negative_ranges,
 )
 from propmdao.json_output import print_json
 from propmdao.observer_options import add_absorption, add_trip, air_of
@@ -50,16 +50,14 @@ def add_flyover(commands: argparse._SubParsersAction[Any]) -> None:
     commands : argparse subparsers
         What it is added to.
     """
-    command = commands.add_parser(
+    command = add_command(
+        commands,
         "flyover",
-        help="level against time, SEL and EPNL on the ground",
-        description=DESCRIPTION,
-        epilog=EXAMPLES,
-        formatter_class=argparse.RawDescriptionHelpFormatter,
-        allow_abbrev=False,
+        _flyover,
+        "level against time, SEL and EPNL on the ground",
+        DESCRIPTION,
+        EXAMPLES,
     )
-    take_negative_ranges(command)
-    command.set_defaults(command=_flyover)
     add_propeller(command)
     add_operating_point(command)
     command.add_argument(

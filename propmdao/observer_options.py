@@ -70,6 +70,20 @@ def add_observers(command: argparse.ArgumentParser) -> None:
     )
 
 
+def add_broadband(command: argparse.ArgumentParser) -> None:
+    """Add the options of broadband noise; `require_broadband` checks them.
+
+    Parameters
+    ----------
+    command : argparse parser
+        What they are added to.
+    """
+    command.add_argument(
+        "--broadband", action="store_true", help="add the broadband self-noise to the tones"
+    )
+    add_trip(command)
+
+
 def add_trip(command: argparse.ArgumentParser) -> None:
     """Add the option of tripped boundary layers.
 
@@ -93,7 +107,7 @@ def require_broadband(options: argparse.Namespace) -> None:
     Parameters
     ----------
     options : argparse.Namespace
-        With ``--broadband`` and the option of `add_trip`.
+        With the options of `add_broadband`.
 
     Raises
     ------

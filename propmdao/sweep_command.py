@@ -8,15 +8,15 @@ from typing import Any
 
 from propmdao.command_options import (
     OPERATING_POINT,
+    add_command,
     add_propeller,
     number,
     number_or_range,
-    take_negative_ranges,
 )
 from propmdao.observer_options import (
+    add_broadband,
     add_observers,
     add_surroundings,
-    add_trip,
     observers_of,
     require_broadband,
     surroundings_of,
@@ -68,16 +68,14 @@ def add_sweep(commands: argparse._SubParsersAction[Any]) -> None:
     commands : argparse subparsers
         What it is added to.
     """
-    command = commands.add_parser(
+    command = add_command(
+        commands,
         "sweep",
-        help="thrust, torque and noise at many points into a table",
-        description=SWEEP_DESCRIPTION,
-        epilog=SWEEP_EXAMPLES,
-        formatter_class=argparse.RawDescriptionHelpFormatter,
-        allow_abbrev=False,
+        _sweep,
+        "thrust, torque and noise at many points into a table",
+        SWEEP_DESCRIPTION,
+        SWEEP_EXAMPLES,
     )
-    take_negative_ranges(command)
-    command.set_defaults(command=_sweep)
     add_propeller(command)
     for option, variable, unit, text in OPTIONS:
         command.add_argument(option, dest=variable, metavar=unit, action="append", help=text)
@@ -93,10 +91,7 @@ def add_sweep(commands: argparse._SubParsersAction[Any]) -> None:
     command.add_argument(
         "--inviscid", action="store_true", help="without the polars of the sections"
     )
-    command.add_argument(
-        "--broadband", action="store_true", help="add the broadband self-noise to the tones"
-    )
-    add_trip(command)
+    add_broadband(command)
     command.add_argument(
         "--workers", type=int, default=1, metavar="N", help="processes that analyse, default 1"
     )

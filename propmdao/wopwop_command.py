@@ -11,6 +11,8 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from propmdao.command_options import add_command
+
 if TYPE_CHECKING:
     from propmdao.wopwop.run import CaseResult
 
@@ -43,18 +45,12 @@ def add_wopwop(commands: argparse._SubParsersAction[Any]) -> None:
     commands : argparse subparsers
         Of ``propmdao``.
     """
-    parser = commands.add_parser(
-        "wopwop",
-        help="run a case of PSU-WOPWOP",
-        description=DESCRIPTION,
-        epilog=EXAMPLES,
-        formatter_class=argparse.RawDescriptionHelpFormatter,
-        allow_abbrev=False,
+    command = add_command(
+        commands, "wopwop", _wopwop, "run a case of PSU-WOPWOP", DESCRIPTION, EXAMPLES
     )
-    parser.set_defaults(command=_wopwop)
-    parser.add_argument("folder", metavar="CASEDIR", type=Path, help="folder with cases.nam in it")
-    parser.add_argument("--json", action="store_true", help="print JSON instead of tables")
-    parser.add_argument(
+    command.add_argument("folder", metavar="CASEDIR", type=Path, help="folder with cases.nam in it")
+    command.add_argument("--json", action="store_true", help="print JSON instead of tables")
+    command.add_argument(
         "--out",
         type=Path,
         metavar="FILE.csv",
