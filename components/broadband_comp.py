@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import dataclasses
-from typing import Any
+from typing import Any, get_args
 
 import jax.numpy as jnp
 import numpy as np
 from jax import Array
+from openmdao.utils.options_dictionary import OptionsDictionary
 
+from propmdao.acoustics.broadband.boundary_layer import Trip
 from propmdao.acoustics.levels import energy_sum_db, level_db, level_dba
 from propmdao.aerodynamics.rings import vortex_rings
 from propmdao.aerodynamics.strips import blade_strips, strip_radii
@@ -74,6 +76,8 @@ class BroadbandComp(OperatingPointsComp):
         Initial `observer_position` [m]; `propmdao.acoustics.observers.arc` makes one.
     fidelity : Fidelity
         Numbers of panels.
+    trip : {"none", "light", "heavy"}
+        How the boundary layers are tripped.
 
     Raises
     ------
@@ -86,6 +90,7 @@ class BroadbandComp(OperatingPointsComp):
         self.options.declare("propeller", types=Propeller, desc="Blades, stations, sections.")
         self.options.declare("observers", types=np.ndarray, desc="Initial positions [m].")
         self.options.declare("fidelity", Fidelity(), types=Fidelity, desc="Numbers of panels.")
+        declare_trip(self.options)
 
     def setup(self) -> None:
         propeller, fidelity = self.options["propeller"], self.options["fidelity"]
@@ -119,15 +124,26 @@ class BroadbandComp(OperatingPointsComp):
         stations = propeller.r_over_R
         radii = strip_radii(float(stations[0]), ns)
         self.function = _broadband
-        self.static = int(propeller.n_blades)
+        self.static = int(propeller.n_blades), self.options["trip"]
         self.constants = blade, span_interpolation(stations, radii)
 
     def check(self, inputs: Any, values: Any) -> None:
         check_tip_speed(inputs, "lattice_nodes")
 
 
-def _broadband(inputs: Arrays, constants: Any, static: int) -> Arrays:
-    n_blades, (blade, section_radii) = static, constants
+def declare_trip(options: OptionsDictionary) -> None:
+    """Declare how the boundary layers are tripped.
+
+    Parameters
+    ----------
+    options : OptionsDictionary
+        Of a component or group.
+    """
+    options.declare("trip", "none", values=get_args(Trip), desc="Of the boundary layers.")
+
+
+def _broadband(inputs: Arrays, constants: Any, static: tuple[int, Trip]) -> Arrays:
+    (n_blades, trip), (blade, section_radii) = static, constants
     blade = dataclasses.replace(blade, thickness_over_chord=inputs["thickness_over_chord"])
     nodes = inputs["lattice_nodes"]
     flow = strip_flow(
@@ -148,6 +164,7 @@ def _broadband(inputs: Arrays, constants: Any, static: int) -> Arrays:
         density,
         sound,
         inputs["observer_position"],
+        trip,
     )
     broadband_db, broadband_dba = (
         level_db(heard.total.sum(axis=1)),

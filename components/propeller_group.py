@@ -11,7 +11,7 @@ from propmdao.aerodynamics.polars import SectionPolars, polars_for
 from propmdao.aerodynamics.trim import LARGEST_TIP_SPEED, LEAST_TIP_SPEED
 from propmdao.components.acoustics_comp import AcousticsComp
 from propmdao.components.aerodynamics_comp import AerodynamicsComp, n_loads
-from propmdao.components.broadband_comp import BroadbandComp
+from propmdao.components.broadband_comp import BroadbandComp, declare_trip
 from propmdao.components.geometry_comp import CAMBER_INPUTS, GeometryComp, blade_distributions
 from propmdao.components.operating_points import declare_num_nodes
 from propmdao.components.rotation_speed_comp import RotationSpeedComp
@@ -96,13 +96,16 @@ broadband_mean_square_pressure, band_frequency
         catalogue's.
     broadband : bool
         Add the broadband self-noise of the blades.
+    trip : {"none", "light", "heavy"}
+        How the boundary layers are tripped: of broadband noise, not of the loads.
     camber : str
         ``"camber_over_chord"``, or ``"design_lift_coefficient"`` to give camber as that.
 
     Raises
     ------
     ValueError
-        For control points that do not fit the blade, and for `broadband` without observers.
+        For control points that do not fit the blade, for `broadband` without observers, and
+        for `trip` without broadband noise.
     om.AnalysisError
         Where a component has no result, with the node where there are several.
     """
@@ -122,6 +125,7 @@ broadband_mean_square_pressure, band_frequency
         declare("stall_delay", True, types=bool, desc="Of rotating sections.")
         declare("polars", None, types=SectionPolars, allow_none=True, desc="Own ones.")
         declare("broadband", False, types=bool, desc="Add the self-noise of the blades.")
+        declare_trip(self.options)
         declare("camber", "camber_over_chord", values=CAMBER_INPUTS, desc="How camber is given.")
 
     def setup(self) -> None:
@@ -166,6 +170,8 @@ broadband_mean_square_pressure, band_frequency
             self._add_noise(rotor["n_blades"])
         elif options["broadband"]:
             raise ValueError("broadband noise is heard at observers; there are none")
+        if options["trip"] != "none" and not options["broadband"]:
+            raise ValueError(f"trip '{options['trip']}' is about broadband noise, which is off")
 
     def _add_noise(self, n_blades: int) -> None:
         options = self.options
@@ -177,7 +183,7 @@ broadband_mean_square_pressure, band_frequency
         if options["broadband"]:
             self.add_subsystem(
                 "broadband",
-                BroadbandComp(propeller=options["propeller"], **heard),
+                BroadbandComp(propeller=options["propeller"], trip=options["trip"], **heard),
                 promotes_inputs=[
                     "lattice_nodes",
                     "section_speed",

@@ -35,9 +35,9 @@ def problem(propeller, small):
     return problem
 
 
-@pytest.mark.parametrize("viscous", [True, False])
-def test_group_agrees_with_analyze(problem, propeller, small, viscous):
-    prob = problem(viscous=viscous, broadband=viscous)
+@pytest.mark.parametrize(("viscous", "trip"), [(True, "none"), (True, "heavy"), (False, "none")])
+def test_group_agrees_with_analyze(problem, propeller, small, viscous, trip):
+    prob = problem(viscous=viscous, broadband=viscous, trip=trip)
     prob.setup()
     prob.run_model()
     assert_allclose(prob.get_val("thrust"), 1.2, rtol=1e-6)
@@ -47,6 +47,7 @@ def test_group_agrees_with_analyze(problem, propeller, small, viscous):
         speed=8.0,
         viscous=viscous,
         broadband=viscous,
+        trip=trip,
         observers=[(1.905, e) for e in ELEVATIONS],
         fidelity=small,
     ).to_dict()
@@ -73,6 +74,11 @@ def test_group_agrees_with_analyze(problem, propeller, small, viscous):
         # analyze's levels are of everything that it computes, ours of tones keep their name
         theirs = [at["oaspl_db"] for at in expected["observers"]]
         assert_allclose(prob.get_val("oaspl_total_db"), theirs, atol=1e-4)
+
+
+def test_tripped_blades_without_broadband_noise_are_an_error(problem):
+    with pytest.raises(ValueError, match="trip 'light' is about broadband noise, which is off"):
+        problem(trip="light").setup()
 
 
 def test_drag_costs_torque(problem):
