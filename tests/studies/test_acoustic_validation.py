@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import csv
-import importlib.util
+from collections.abc import Callable
 from pathlib import Path
 from types import ModuleType
 
@@ -25,13 +25,8 @@ SOUNDS = {"apcsf_11x4.7.wav", "apcsf_10x4.7.wav"}
 
 
 @pytest.fixture(scope="module")
-def study(checkout: Path) -> ModuleType:
-    path = checkout / "studies" / "acoustic_validation.py"
-    spec = importlib.util.spec_from_file_location("acoustic_validation", path)
-    assert spec is not None and spec.loader is not None
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module
+def study(import_study: Callable[[str], ModuleType]) -> ModuleType:
+    return import_study("acoustic_validation")
 
 
 @pytest.fixture(scope="module")

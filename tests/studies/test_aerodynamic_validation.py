@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import csv
 import dataclasses
-import importlib
 
 import numpy as np
 import pytest
@@ -18,16 +17,9 @@ from propmdao.wind_tunnel import calibrated_twist_deg
 CASE = "apcsf_11x4.7"
 
 
-@pytest.fixture
-def study(checkout, monkeypatch):
-    """A study by its name, its main called as from the command line."""
-    monkeypatch.syspath_prepend(checkout / "studies")
+@pytest.fixture(autouse=True)
+def _terminal(monkeypatch):
     monkeypatch.setenv("COLUMNS", "80")
-
-    def get(name):
-        return importlib.reload(importlib.import_module(name))
-
-    return get
 
 
 def run(study, monkeypatch, capsys, folder, *arguments) -> str:
@@ -42,9 +34,9 @@ def rows(file) -> list[dict[str, str]]:
 
 
 @pytest.fixture
-def few_points(study):
+def few_points(import_study):
     """Two static points and two with flight speed, one propeller."""
-    validation = study("aerodynamic_validation")
+    validation = import_study("aerodynamic_validation")
     whole = validation.measurements(CASE)
     few = dataclasses.replace(whole, static=whole.static[[2, 9]], dynamic=whole.dynamic[[18, 29]])
     validation.CASES = {CASE: validation.CASES[CASE]}
@@ -79,18 +71,18 @@ def test_published_and_calibrated_columns(few_points, monkeypatch, capsys, tmp_p
         assert (tmp_path / figure).read_bytes()[16:20] == (1200).to_bytes(4, "big")
 
 
-def test_quick_takes_points_of_every_kind(study):
-    tunnel = study("aerodynamic_validation").measurements(CASE, quick=True)
+def test_quick_takes_points_of_every_kind(import_study):
+    tunnel = import_study("aerodynamic_validation").measurements(CASE, quick=True)
     assert 2 <= tunnel.static.rpm.size <= 4
     assert tunnel.dynamic.J.min() <= 0.5 < tunnel.dynamic.J.max()
 
 
 @pytest.mark.slow
 def test_sensitivities_and_the_twist_each_point_needs(
-    few_points, study, monkeypatch, capsys, tmp_path
+    few_points, import_study, monkeypatch, capsys, tmp_path
 ):
     validation, few = few_points
-    sensitivity = study("aerodynamic_sensitivity")
+    sensitivity = import_study("aerodynamic_sensitivity")
     sensitivity.PITCH = {CASE: sensitivity.PITCH[CASE]}
     sensitivity.measurements = validation.measurements
     every = sensitivity.variants
@@ -108,8 +100,8 @@ def test_sensitivities_and_the_twist_each_point_needs(
     assert len(needed) == few.static.rpm.size + (few.dynamic.J <= 0.5).sum()
 
 
-def test_prescribed_wake_has_the_thrust_of_the_one_that_moves_as_it_says(study):
-    transport = study("wake_transport")
+def test_prescribed_wake_has_the_thrust_of_the_one_that_moves_as_it_says(import_study):
+    transport = import_study("wake_transport")
     (row,) = transport.compare([(CASE, 2, 0.0)], steps=12)
     assert abs(row["CT, %"]) < 1.5 and abs(row["CP, %"]) < 2.0
     assert row["before"] == pytest.approx(0.35, abs=0.05)
@@ -117,9 +109,9 @@ def test_prescribed_wake_has_the_thrust_of_the_one_that_moves_as_it_says(study):
     assert 1.1 < row["P/ideal"] < 1.2  # as rotors have it
 
 
-def test_wake_of_the_sensitivities_is_the_solver_s_own(few_points, study):
+def test_wake_of_the_sensitivities_is_the_solver_s_own(few_points, import_study):
     _, few = few_points
-    sensitivity = study("aerodynamic_sensitivity")
+    sensitivity = import_study("aerodynamic_sensitivity")
     propeller = load_propeller(CASE)
     for points in (few.static, few.dynamic):
         own = sensitivity.computed(propeller, points, 0.5)
@@ -127,8 +119,8 @@ def test_wake_of_the_sensitivities_is_the_solver_s_own(few_points, study):
         np.testing.assert_allclose((same.CT, same.CP), (own.CT, own.CP), rtol=1e-4)
 
 
-def test_hover_noise_table_is_that_of_its_tones(study, monkeypatch, capsys, tmp_path):
-    hover = study("hover_noise")
+def test_hover_noise_table_is_that_of_its_tones(import_study, monkeypatch, capsys, tmp_path):
+    hover = import_study("hover_noise")
     printed = run(hover, monkeypatch, capsys, tmp_path)
     assert "4200 rpm: thrust" in printed
     table = rows(tmp_path / "hover_noise.csv")
@@ -142,8 +134,8 @@ def test_hover_noise_table_is_that_of_its_tones(study, monkeypatch, capsys, tmp_
     assert (tmp_path / "directivity.png").read_bytes()[16:20] == (1200).to_bytes(4, "big")
 
 
-def test_loads_that_need_no_scaling_keep_their_tone(study):
-    hover = study("hover_noise")
+def test_loads_that_need_no_scaling_keep_their_tone(import_study):
+    hover = import_study("hover_noise")
     found = analyze(hover.PROPELLER, rpm=4200, density=hover.DENSITY, observers=[(1.905, -45.0)])
     (same,) = hover.scaled_tone(found, 1.0, 1.0)
     assert same == pytest.approx(found.to_dict()["observers"][0]["spl_bpf_db"], abs=1e-9)

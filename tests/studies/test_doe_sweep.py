@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import importlib
-import importlib.util
+from collections.abc import Callable
 from pathlib import Path
 from types import ModuleType
 
@@ -17,17 +17,9 @@ pytest.importorskip("pydoe", reason="pydoe, an extra, is not installed")
 from propmdao.fidelity import Fidelity
 
 
-@pytest.fixture
-def study(checkout: Path, monkeypatch: pytest.MonkeyPatch) -> ModuleType:
-    """The script, beside the one whose problem it samples, as when it is run."""
-    monkeypatch.syspath_prepend(checkout / "studies")
-    spec = importlib.util.spec_from_file_location(
-        "doe_sweep", checkout / "studies" / "doe_sweep.py"
-    )
-    assert spec is not None and spec.loader is not None
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module
+@pytest.fixture(scope="module")
+def study(import_study: Callable[[str], ModuleType]) -> ModuleType:
+    return import_study("doe_sweep")
 
 
 def points(n: int, seed: int = 0) -> np.ndarray:

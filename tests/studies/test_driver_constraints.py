@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import importlib.util
+from collections.abc import Callable
 from pathlib import Path
 from types import ModuleType
 
@@ -13,13 +13,8 @@ pytestmark = pytest.mark.filterwarnings("ignore:.*deprecated", "ignore:.*cannot 
 
 
 @pytest.fixture(scope="module")
-def study(checkout: Path) -> ModuleType:
-    file = checkout / "studies" / "driver_constraints.py"
-    spec = importlib.util.spec_from_file_location("driver_constraints", file)
-    assert spec is not None and spec.loader is not None
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module
+def study(import_study: Callable[[str], ModuleType]) -> ModuleType:
+    return import_study("driver_constraints")
 
 
 CASES = ["vector, first element active", "vector, last element active", "equality",

@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import csv
 import dataclasses
-import importlib.util
 import re
-from pathlib import Path
+from collections.abc import Callable
 from types import ModuleType
 
 import numpy as np
@@ -16,12 +15,8 @@ pytest.importorskip("matplotlib")
 
 
 @pytest.fixture(scope="module")
-def study(checkout: Path) -> ModuleType:
-    path = checkout / "studies" / "flyover.py"
-    spec = importlib.util.spec_from_file_location("flyover_study", path)
-    assert spec is not None and spec.loader is not None
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
+def study(import_study: Callable[[str], ModuleType]) -> ModuleType:
+    module = import_study("flyover")
     module.FLIGHT = dataclasses.replace(module.FLIGHT, duration=20.0)
     module.ARC = np.linspace(-90.0, 90.0, 7)
     return module

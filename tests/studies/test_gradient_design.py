@@ -3,10 +3,8 @@
 from __future__ import annotations
 
 import csv
-import importlib
 import io
-import sys
-from collections.abc import Iterator
+from collections.abc import Callable
 from contextlib import redirect_stdout
 from pathlib import Path
 from types import ModuleType
@@ -22,22 +20,12 @@ from propmdao.components.gradient_search import Search
 from propmdao.components.search_history import SearchHistory
 from propmdao.fidelity import Fidelity
 
-COARSE = Fidelity(n_chordwise=4, n_spanwise=8, n_contour=15, n_surface_span=12, n_harmonics=3)
-STUDIES = ("low_noise_design", "free_form_blade", "gradient_design")
-
 
 @pytest.fixture(scope="module")
-def study(checkout: Path) -> Iterator[ModuleType]:
-    """The script beside those it builds on, as when it is run, on coarse meshes."""
-    with pytest.MonkeyPatch.context() as patch:
-        patch.syspath_prepend(checkout / "studies")
-        for name in STUDIES:
-            patch.delitem(sys.modules, name, raising=False)
-        module = importlib.import_module("gradient_design")
-        module.thesis.FIDELITY = COARSE
-        yield module
-        for name in STUDIES:
-            sys.modules.pop(name, None)
+def study(import_study: Callable[[str], ModuleType], coarse: Fidelity) -> ModuleType:
+    module = import_study("gradient_design")
+    module.thesis.FIDELITY = coarse
+    return module
 
 
 @pytest.fixture(scope="module")

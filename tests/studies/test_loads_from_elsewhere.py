@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-import importlib.util
 import warnings
+from collections.abc import Callable
 from pathlib import Path
 from types import ModuleType
 
@@ -21,13 +21,8 @@ RHO, C, DISTANCE = 1.226, 340.0, 30.48
 
 
 @pytest.fixture(scope="module")
-def study(checkout: Path) -> ModuleType:
-    path = checkout / "studies" / "loads_from_elsewhere.py"
-    spec = importlib.util.spec_from_file_location("loads_from_elsewhere", path)
-    assert spec is not None and spec.loader is not None
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module
+def study(import_study: Callable[[str], ModuleType]) -> ModuleType:
+    return import_study("loads_from_elsewhere")
 
 
 def printed(

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import csv
 import dataclasses
-import importlib.util
 import io
 import json
+from collections.abc import Callable
 from contextlib import redirect_stdout
 from pathlib import Path
 from types import ModuleType
@@ -24,7 +24,7 @@ from propmdao.components import AcousticsComp
 from propmdao.fidelity import Fidelity
 from propmdao.propeller import Propeller, load_propeller
 
-COARSE = Fidelity(n_chordwise=4, n_spanwise=8, n_contour=15, n_surface_span=12, n_harmonics=3)
+Analysed = Callable[..., dict[str, float]]
 # Table 4.10 of the thesis, as printed: APC 11x4.7 SF, optimized, difference.
 TABLE_4_10 = {
     "rotation speed, rpm": ("4200", "4636", None),  # printed: +636
@@ -39,21 +39,11 @@ TABLE_4_10 = {
 }
 
 
-def import_study(checkout: Path) -> ModuleType:
-    """A fresh module from the script, as from a copy of it anywhere."""
-    spec = importlib.util.spec_from_file_location(
-        "low_noise_design", checkout / "studies" / "low_noise_design.py"
-    )
-    assert spec is not None and spec.loader is not None
-    study = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(study)
-    return study
-
-
-def coarse_study(checkout: Path) -> ModuleType:
-    study = import_study(checkout)
-    study.FIDELITY, study.POPULATION = COARSE, 6
-    return study
+@pytest.fixture(scope="module")
+def study(import_study: Callable[[str], ModuleType], coarse: Fidelity) -> ModuleType:
+    module = import_study("low_noise_design")
+    module.FIDELITY, module.POPULATION = coarse, 6
+    return module
 
 
 def run_main(study: ModuleType, folder: Path, *arguments: str) -> str:
@@ -78,21 +68,30 @@ class Run:
 
 
 @pytest.fixture(scope="module")
-def run(checkout: Path, tmp_path_factory: pytest.TempPathFactory) -> Run:
+def run(study: ModuleType, tmp_path_factory: pytest.TempPathFactory) -> Run:
     folder = tmp_path_factory.mktemp("study") / "new" / "folder"
-    printed = run_main(coarse_study(checkout), folder, "--evaluations", "19", "--seed", "3")
+    printed = run_main(study, folder, "--evaluations", "19", "--seed", "3")
     with (folder / "low_noise_design.csv").open(newline="", encoding="utf-8") as stream:
         return Run(folder, printed, {row.pop(""): row for row in csv.DictReader(stream)})
 
 
-def analysis(propeller: Propeller, **drive: float) -> dict[str, float]:
-    return at_observer(
-        analyze(propeller, **drive, speed=8.0, observers=[(1.905, -45.0)], fidelity=COARSE)
-    )
+@pytest.fixture(scope="module")
+def analysis(coarse: Fidelity) -> Analysed:
+    """What the microphone hears of a propeller at a thrust or rpm."""
+
+    def of(propeller: Propeller, **drive: float) -> dict[str, float]:
+        observers = [(1.905, -45.0)]
+        return at_observer(
+            analyze(propeller, **drive, speed=8.0, observers=observers, fidelity=coarse)
+        )
+
+    return of
 
 
 @pytest.mark.parametrize("heading", ["APC-SF 11x4.7", "optimum", "thesis' optimum"])
-def test_columns_are_what_analyze_says_of_the_propeller(run: Run, heading: str) -> None:
+def test_columns_are_what_analyze_says_of_the_propeller(
+    run: Run, analysis: Analysed, heading: str
+) -> None:
     # Of the files that a user gets for the two new blades.
     name = {"optimum": "optimum.toml", "thesis' optimum": "thesis_optimum.toml"}.get(heading)
     propeller = load_propeller(run.folder / name if name else "apcsf_11x4.7_thesis")
@@ -116,18 +115,18 @@ def test_the_written_blade_is_the_one_that_was_optimised(run: Run) -> None:
 
 
 def test_the_optimum_is_feasible_and_no_louder_than_any_feasible_design(
-    run: Run, checkout: Path
+    run: Run, study: ModuleType
 ) -> None:
     optimum, baseline = run.column("optimum"), run.column("APC-SF 11x4.7")
     assert optimum["torque"] <= baseline["torque"]
-    objective, feasible = coarse_study(checkout).designs_tried(run.folder, baseline["torque"])
+    objective, feasible = study.designs_tried(run.folder, baseline["torque"])
     assert len(objective) == 18  # whole generations of 6 within 19 evaluations
     assert_allclose(optimum["oaspl_db"], np.min(np.array(objective)[feasible]), atol=1e-7)
 
 
-def test_the_search_starts_from_naca_4409(run: Run, checkout: Path) -> None:
+def test_the_search_starts_from_naca_4409(run: Run, study: ModuleType, analysis: Analysed) -> None:
     start = dataclasses.replace(load_propeller("apcsf_11x4.7_thesis"), airfoils=[(1.0, "naca4409")])
-    objective, _ = coarse_study(checkout).designs_tried(run.folder, np.inf)
+    objective, _ = study.designs_tried(run.folder, np.inf)
     assert_allclose(objective[0], analysis(start, thrust=1.2)["oaspl_db"], atol=1e-7)
 
 
@@ -167,7 +166,7 @@ def test_printed_table_is_the_csv_rounded_and_fits_a_terminal(run: Run) -> None:
         assert line.removeprefix(label).split() == rounded
 
 
-def test_note_compares_with_the_thesis_at_its_rotation_speed(run: Run) -> None:
+def test_note_compares_with_the_thesis_at_its_rotation_speed(run: Run, analysis: Analysed) -> None:
     at_4200 = analysis(load_propeller("apcsf_11x4.7_thesis"), rpm=4200.0)
     note = " ".join(run.printed.split())
     assert f"at 4200 rpm here: {at_4200['thrust']:.2f} N, CT {at_4200['CT']:.4f}" in note
@@ -182,8 +181,7 @@ def test_figures_are_1200_pixels_wide(run: Run, name: str) -> None:
     assert int.from_bytes(image[16:20], "big") == 1200
 
 
-def test_same_seed_gives_the_same_design(run: Run, checkout: Path, tmp_path: Path) -> None:
-    study = coarse_study(checkout)
+def test_same_seed_gives_the_same_design(run: Run, study: ModuleType, tmp_path: Path) -> None:
     problem = study.build_problem(run.column("APC-SF 11x4.7")["torque"])
     study.optimise(problem, 19, 3, tmp_path)
     again, first = ((f / "best_design.json").read_text() for f in (tmp_path, run.folder))
@@ -191,7 +189,7 @@ def test_same_seed_gives_the_same_design(run: Run, checkout: Path, tmp_path: Pat
 
 
 def test_an_interrupted_run_leaves_its_best_design_and_says_where(
-    checkout: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    study: ModuleType, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     compute, calls = AcousticsComp.compute, []
 
@@ -203,16 +201,15 @@ def test_an_interrupted_run_leaves_its_best_design_and_says_where(
 
     monkeypatch.setattr(AcousticsComp, "compute", interrupted)
     with pytest.raises(SystemExit) as stop:
-        run_main(coarse_study(checkout), tmp_path)
+        run_main(study, tmp_path)
     file = tmp_path / "best_design.json"
     assert str(file) in str(stop.value)
     assert json.loads(file.read_text())["evaluations"] <= 3
 
 
 def test_without_a_feasible_design_there_is_one_line_and_no_table(
-    checkout: Path, tmp_path: Path
+    study: ModuleType, tmp_path: Path
 ) -> None:
-    study = coarse_study(checkout)
     problem = study.build_problem(1e-3)
     with pytest.raises(SystemExit, match="No design meets the constraint"):
         study.optimise(problem, 6, 1, tmp_path)
@@ -221,10 +218,9 @@ def test_without_a_feasible_design_there_is_one_line_and_no_table(
 
 @pytest.mark.slow
 def test_evolution_comes_within_a_twentieth_of_a_decibel_of_gradients(
-    checkout: Path, tmp_path: Path
+    study: ModuleType, analysis: Analysed, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    study = import_study(checkout)
-    study.FIDELITY = COARSE
+    monkeypatch.setattr(study, "POPULATION", 24)  # as it comes
     limit = analysis(load_propeller("apcsf_11x4.7_thesis"), thrust=1.2)["torque"]
     by_gradient = study.build_problem(limit)
     by_gradient.driver = om.ScipyOptimizeDriver(optimizer="SLSQP", tol=1e-7, disp=False)

@@ -2,35 +2,26 @@
 
 from __future__ import annotations
 
-import importlib.util
-from pathlib import Path
+from collections.abc import Callable
 from types import ModuleType
 
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from propmdao.fidelity import Fidelity
-
 pytest.importorskip("dymos")
 
-QUICK = Fidelity(n_chordwise=2, n_spanwise=4, n_contour=5, n_surface_span=4, n_harmonics=2)
 CLIMB = "trajectory.climb"
 
 
 @pytest.fixture(scope="module")
-def study(checkout: Path) -> ModuleType:
-    path = checkout / "studies" / "mission.py"
-    spec = importlib.util.spec_from_file_location("mission_study", path)
-    assert spec is not None and spec.loader is not None
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module
+def study(import_study: Callable[[str], ModuleType]) -> ModuleType:
+    return import_study("mission")
 
 
-def test_totals_of_the_phase_against_differences(study):
+def test_totals_of_the_phase_against_differences(study, coarsest):
     """Along a random direction for each design variable, at the best of several steps."""
-    prob = study.mission(segments=2, twist=True, fidelity=QUICK)
+    prob = study.mission(segments=2, twist=True, fidelity=coarsest)
     prob.run_model()
     driver, rng = prob.driver, np.random.default_rng(2)
     totals = prob.compute_totals(driver_scaling=False)
@@ -65,8 +56,8 @@ def test_totals_of_the_phase_against_differences(study):
 
 
 @pytest.mark.slow
-def test_the_climb_takes_less_energy_than_the_first_guess(study, capsys):
-    prob = study.mission(segments=3, fidelity=QUICK)
+def test_the_climb_takes_less_energy_than_the_first_guess(study, coarsest, capsys):
+    prob = study.mission(segments=3, fidelity=coarsest)
     prob.run_model()
     guess = prob.get_val(f"{CLIMB}.timeseries.battery_power")[-1, 0] * 24.0 / 1e3  # kJ
     assert prob.run_driver().success

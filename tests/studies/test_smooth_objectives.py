@@ -2,10 +2,7 @@
 
 from __future__ import annotations
 
-import importlib
-import sys
-from collections.abc import Iterator
-from pathlib import Path
+from collections.abc import Callable
 from types import ModuleType
 
 import numpy as np
@@ -16,23 +13,14 @@ pytest.importorskip("matplotlib", reason="matplotlib, an extra, is not installed
 
 from propmdao.fidelity import Fidelity
 
-COARSE = Fidelity(n_chordwise=4, n_spanwise=8, n_contour=15, n_surface_span=12, n_harmonics=3)
-STUDIES = ("low_noise_design", "free_form_blade", "smooth_objectives")
 AT = 0.37
 
 
 @pytest.fixture(scope="module")
-def study(checkout: Path) -> Iterator[ModuleType]:
-    """The script beside those it builds on, as when it is run, on coarse meshes."""
-    with pytest.MonkeyPatch.context() as patch:
-        patch.syspath_prepend(checkout / "studies")
-        for name in STUDIES:
-            patch.delitem(sys.modules, name, raising=False)
-        module = importlib.import_module("smooth_objectives")
-        module.thesis.FIDELITY = COARSE
-        yield module
-        for name in STUDIES:
-            sys.modules.pop(name, None)
+def study(import_study: Callable[[str], ModuleType], coarse: Fidelity) -> ModuleType:
+    module = import_study("smooth_objectives")
+    module.thesis.FIDELITY = coarse
+    return module
 
 
 def known(x: float) -> np.ndarray:
