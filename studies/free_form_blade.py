@@ -28,7 +28,6 @@ import openmdao.api as om
 from low_noise_design import BASELINE
 
 from propmdao.acoustics.observers import arc
-from propmdao.comparison import Rows
 from propmdao.components import NoiseObjectiveComp, PropellerGroup
 from propmdao.fidelity import Fidelity
 from propmdao.naca_blade import with_naca_sections
@@ -57,7 +56,6 @@ SLOPES = {
     "sweep_over_R": (-0.5, 0.5),
 }
 MIN_THICKNESS = ([0.15, 0.5, 1.0], [1.5e-3, 1.5e-3, 0.5e-3])  # r/R, m
-Design = dict[str, np.ndarray]  # control points by distribution
 OBJECTIVES = {"tones": "tones.soft_maximum_db", "total": "total.soft_maximum_db"}  # dB, dBA
 
 
@@ -182,24 +180,3 @@ def write_blade(prob: om.Problem, name: str, folder: Path) -> Propeller:
         at["thickness_over_chord"], folder, c_over_R=at["chord_over_R"], beta_deg=at["beta"],
         sweep_over_R=at["sweep_over_R"], source="free-form blade of a design study",
     )  # fmt: skip
-
-
-def contributions(prob: om.Problem, start: Design, best: Design) -> Rows:
-    """What each kind of variable brings when one after the other takes its optimum's values."""
-    rows: Rows = [("taken from the optimum", "rpm", "torque, mN m", "tones, dB", "total, dBA")]
-    for name, value in start.items():
-        prob.set_val(f"{name}_cp", value)
-    labels = {"": "none: the start", "beta": "+ blade angle", "chord_over_R": "+ chord",
-              "camber_over_chord": "+ camber", "thickness_over_chord": "+ thickness",
-              "sweep_over_R": "+ sweep: the optimum"}  # fmt: skip
-    for name, label in labels.items():
-        if name:
-            prob.set_val(f"{name}_cp", best[name])
-        prob.run_model()
-        rpm, torque, *levels = (
-            float(prob.get_val(of)[0]) for of in ("rpm", "torque", *OBJECTIVES.values())
-        )
-        rows.append(
-            (label, f"{rpm:.0f}", f"{1e3 * torque:.2f}", *(f"{level:.2f}" for level in levels))
-        )
-    return rows

@@ -14,6 +14,7 @@ ends SLSQP, so the bounds leave out what cannot be analysed.
 """
 
 import argparse
+import tempfile
 import time
 from pathlib import Path
 from typing import NamedTuple
@@ -27,7 +28,7 @@ from propmdao import acoustic_plots, directivity_plots, optimisation_plots, plot
 from propmdao.acoustics.levels import level_db, level_dba, oaspl_db
 from propmdao.aerodynamics.section_laws import AIR_VISCOSITY
 from propmdao.analysis import Analysis, analyze
-from propmdao.comparison import Cell, Row, Rows, markdown, print_comparison
+from propmdao.comparison import Cell, Row, Rows, markdown, print_comparison, side_by_side
 from propmdao.components.gradient_search import Search, run_slsqp
 from propmdao.components.noise_objective_comp import soft_maximum_db
 from propmdao.components.search_history import read_history
@@ -52,6 +53,13 @@ ROWS: tuple[Row, ...] = (
     ("blade area, cm2", "area", ".1f"),
     ("least Re beyond r/R 0.4", "reynolds", ".0f"),
 )
+
+# Distributions in the order in which they take the optimum's values, and what is shown then.
+STEPS = {"": "none: the start", "beta": "+ blade angle", "chord_over_R": "+ chord",
+         "camber_over_chord": "+ camber", "thickness_over_chord": "+ thickness",
+         "sweep_over_R": "+ sweep: the optimum"}  # fmt: skip
+BY_STEP = ("rpm", "torque", "tones", "thickness_at", "loading_at", "total", "tripped")
+Design = dict[str, np.ndarray]  # control points by distribution
 
 
 def evaluate(propeller: Propeller) -> Analysis:
@@ -92,6 +100,23 @@ def column(propeller: Propeller, of: Analysis) -> dict[str, Cell]:
     }
 
 
+def contributions(prob: om.Problem, start: Design, best: Design) -> Rows:
+    """What each kind of variable brings when one after the other takes its optimum's values."""
+    for name, value in start.items():
+        prob.set_val(f"{name}_cp", value)
+    steps = {}
+    with tempfile.TemporaryDirectory() as folder:
+        for name, label in STEPS.items():
+            if name:
+                prob.set_val(f"{name}_cp", best[name])
+            prob.run_model()
+            blade = free_form.write_blade(prob, "step", Path(folder))
+            steps[label] = column(blade, evaluate(blade))
+    rows = [(label.strip(), key, form) for label, key, form in ROWS if key in BY_STEP]
+    head, *others = zip(*side_by_side(rows, steps), strict=True)
+    return [("taken from the optimum", *head[1:]), *others]
+
+
 def cost(searches: dict[str, Search]) -> Rows:
     """How each design was found, its head first."""
     rows: Rows = [("search", "designs", "objective at start", "at the end", "largest violation",
@@ -117,7 +142,7 @@ class Results(NamedTuple):
         return {name: column(self.blades[name], of) for name, of in self.analyses.items()}
 
 
-def control_points(prob: om.Problem) -> dict[str, np.ndarray]:
+def control_points(prob: om.Problem) -> Design:
     """Control points of a free-form blade by distribution."""
     return {name: prob.get_val(f"{name}_cp").copy() for name in free_form.BOUNDS}
 
@@ -126,7 +151,7 @@ def design(output: Path, evolution: int = 0) -> Results:
     """Search and write the blades; `evolution` designs of differential evolution, 0 for none."""
     blades = {"APC-SF": thesis.BASELINE}
     analyses = {"APC-SF": evaluate(thesis.BASELINE)}
-    searches, contributions = {}, {}
+    searches, brought = {}, {}
     before = column(blades["APC-SF"], analyses["APC-SF"])
     torque = float(analyses["APC-SF"].steady.torque)
 
@@ -152,9 +177,9 @@ def design(output: Path, evolution: int = 0) -> Results:
             prob.set_val(f"{point}_cp", value)
         searches[name] = run_slsqp(prob, output / f"{objective}.sql")
         blades[name] = free_form.write_blade(prob, f"quiet_{objective}", output)
-        contributions[name] = free_form.contributions(prob, start, control_points(prob))
+        brought[name] = contributions(prob, start, control_points(prob))
     analyses |= {name: evaluate(blade) for name, blade in blades.items() if name not in analyses}
-    return Results(blades, analyses, searches, contributions)
+    return Results(blades, analyses, searches, brought)
 
 
 def draw(results: Results, output: Path) -> None:

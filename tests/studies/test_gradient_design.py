@@ -94,12 +94,19 @@ def test_contributions_lead_from_the_start_to_the_optimum(
     study: ModuleType, problem: om.Problem
 ) -> None:
     best = {name: problem.get_val(f"{name}_cp").copy() for name in study.free_form.BOUNDS}
-    rpm, tones = (problem.get_val(of)[0] for of in ("rpm", "tones.soft_maximum_db"))
+    rpm, torque, tones, total = (
+        problem.get_val(of)[0]
+        for of in ("rpm", "torque", "tones.soft_maximum_db", "total.soft_maximum_db")
+    )
     start = {name: 0.9 * value for name, value in best.items()}
-    table = study.free_form.contributions(problem, start, best)
+    head, first, *_, last = table = study.contributions(problem, start, best)
     assert len(table) == 2 + len(best)
-    assert table[-1][1::2] == (f"{rpm:.0f}", f"{tones:.2f}")
-    assert table[1][1] != table[-1][1]
+    shown = dict(zip(head, last, strict=True))
+    assert shown["rotation speed, rpm"] == f"{rpm:.0f}"
+    assert float(shown["torque, mN m"]) == pytest.approx(1e3 * torque, rel=1e-4)
+    assert float(shown["tones, soft maximum, dB"]) == pytest.approx(tones, abs=0.01)
+    assert float(shown["total, soft maximum, dBA"]) == pytest.approx(total, abs=0.01)
+    assert first[1] != last[1]
 
 
 def test_tables_and_figures_without_a_search(
