@@ -5,11 +5,11 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-import openmdao.api as om
 
-from propmdao.acoustics.formulation1a import require_subsonic_tip, tones
+from propmdao.acoustics.formulation1a import tones
 from propmdao.acoustics.levels import oaspl_db, oaspl_dba, spl_db
 from propmdao.components.jax_component import Arrays
+from propmdao.components.noise_inputs import add_noise_inputs, check_rotor, noise_at
 from propmdao.components.operating_points import STATIC, OperatingPointsComp
 from propmdao.fidelity import Fidelity
 from propmdao.geometry.surface import surface_panels
@@ -68,7 +68,8 @@ class AcousticsComp(OperatingPointsComp):
     Raises
     ------
     om.AnalysisError
-        When the blade tip is not slower than sound, with the node where there are several.
+        When the blade tip is not slower than sound, or an observer not outside the rotor, with the
+        node where there are several.
     """
 
     def initialize(self) -> None:
@@ -87,11 +88,7 @@ class AcousticsComp(OperatingPointsComp):
         self.add_point_input(
             "load_force", shape=(n_loads, 3), units="N", desc="Force on the fluid."
         )
-        self.add_point_input("rpm", val=4000.0, units="rpm")
-        self.add_point_input("speed", val=0.0, units="m/s")
-        self.add_point_input("density", val=1.225, units="kg/m**3")
-        self.add_point_input("sound_speed", val=340.294, units="m/s")
-        self.add_input("observer_position", val=observers, units="m", tags=STATIC)
+        add_noise_inputs(self, observers)
         for name, desc in (
             ("spl_bpf_db", "Level of the blade-passage tone."),
             ("oaspl_db", "Overall level of the tones."),
@@ -108,46 +105,16 @@ class AcousticsComp(OperatingPointsComp):
         self.static = (self.options["n_blades"], fidelity.n_harmonics)
 
     def check(self, inputs: Any, values: Any) -> None:
-        check_tip_speed(inputs, "surface_nodes")
-
-
-def check_tip_speed(inputs: Any, nodes: str) -> None:
-    """Refuse blades that reach the speed of sound.
-
-    Parameters
-    ----------
-    inputs : mapping
-        With rpm, speed and sound_speed.
-    nodes : str
-        Input that holds points of the blade, (..., 3).
-
-    Raises
-    ------
-    om.AnalysisError
-        When the blade tip is not slower than sound.
-    """
-    x, y, _ = np.moveaxis(np.asarray(inputs[nodes]), -1, 0)
-    rpm, speed, sound = (float(inputs[n][0]) for n in ("rpm", "speed", "sound_speed"))
-    try:
-        require_subsonic_tip(float(np.hypot(x, y).max()), rpm * np.pi / 30.0, speed, sound)
-    except ValueError as error:
-        raise om.AnalysisError(str(error)) from error
+        check_rotor(inputs, "surface_nodes")
 
 
 def _levels(inputs: Arrays, constants: None, static: tuple[int, int]) -> Arrays:
     n_blades, n_harmonics = static
-    rpm, speed, density, sound = (
-        inputs[name][0] for name in ("rpm", "speed", "density", "sound_speed")
-    )
     heard = tones(
         surface_panels(inputs["surface_nodes"]),
         PointLoads(inputs["load_position"], inputs["load_force"]),
         n_blades,
-        rpm * (np.pi / 30.0),
-        speed,
-        density,
-        sound,
-        inputs["observer_position"],
+        *noise_at(inputs),
         n_harmonics,
     )
     return {

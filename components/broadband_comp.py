@@ -14,8 +14,8 @@ from propmdao.acoustics.broadband.boundary_layer import Trip
 from propmdao.acoustics.levels import energy_sum_db, level_db, level_dba
 from propmdao.aerodynamics.rings import vortex_rings
 from propmdao.aerodynamics.strips import blade_strips, strip_radii
-from propmdao.components.acoustics_comp import check_tip_speed
 from propmdao.components.jax_component import Arrays
+from propmdao.components.noise_inputs import add_noise_inputs, check_rotor, noise_at
 from propmdao.components.operating_points import STATIC, OperatingPointsComp
 from propmdao.fidelity import Fidelity
 from propmdao.geometry.blade import Blade, span_interpolation
@@ -82,7 +82,8 @@ class BroadbandComp(OperatingPointsComp):
     Raises
     ------
     om.AnalysisError
-        When the blade tip is not slower than sound, with the node where there are several.
+        When the blade tip is not slower than sound, or an observer not outside the rotor, with the
+        node where there are several.
     """
 
     def initialize(self) -> None:
@@ -103,11 +104,7 @@ class BroadbandComp(OperatingPointsComp):
         self.add_input(
             "thickness_over_chord", val=np.asarray(blade.thickness_over_chord), tags=STATIC
         )
-        self.add_point_input("rpm", val=4000.0, units="rpm")
-        self.add_point_input("speed", val=0.0, units="m/s")
-        self.add_point_input("density", val=1.225, units="kg/m**3")
-        self.add_point_input("sound_speed", val=340.294, units="m/s")
-        self.add_input("observer_position", val=observers, units="m", tags=STATIC)
+        add_noise_inputs(self, observers)
         self.add_point_input("oaspl_db", _SILENCE_DB, shape=(n_observers,), desc="Of the tones.")
         self.add_point_input("oaspl_dba", _SILENCE_DB, shape=(n_observers,), desc="Of the tones.")
         self.add_point_output(
@@ -128,7 +125,7 @@ class BroadbandComp(OperatingPointsComp):
         self.constants = blade, span_interpolation(stations, radii)
 
     def check(self, inputs: Any, values: Any) -> None:
-        check_tip_speed(inputs, "lattice_nodes")
+        check_rotor(inputs, "lattice_nodes")
 
 
 def declare_trip(options: OptionsDictionary) -> None:
@@ -147,25 +144,14 @@ def _broadband(inputs: Arrays, constants: Any, static: tuple[int, Trip]) -> Arra
     blade = dataclasses.replace(blade, thickness_over_chord=inputs["thickness_over_chord"])
     nodes = inputs["lattice_nodes"]
     flow = strip_flow(
+        # The noise knows no r/R, and thus no diameter but that of the lattice.
         blade_strips(nodes, vortex_rings(nodes), blade.radius),
         inputs["section_speed"],
         inputs["section_lift_coefficient"],
         blade,
         section_radii,
     )
-    rpm, speed, density, sound = (
-        inputs[name][0] for name in ("rpm", "speed", "density", "sound_speed")
-    )
-    heard = self_noise(
-        flow,
-        n_blades,
-        rpm * (np.pi / 30.0),
-        speed,
-        density,
-        sound,
-        inputs["observer_position"],
-        trip,
-    )
+    heard = self_noise(flow, n_blades, *noise_at(inputs), trip)
     broadband_db, broadband_dba = (
         level_db(heard.total.sum(axis=1)),
         level_dba(BANDS_HZ, heard.total),

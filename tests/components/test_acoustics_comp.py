@@ -128,6 +128,12 @@ def test_supersonic_tip_is_a_failed_analysis(problem):
         problem.run_model()
 
 
+def test_observer_inside_the_rotor_is_a_failed_analysis(problem):
+    problem.set_val("observer_position", 0.05 * OBSERVERS)
+    with pytest.raises(om.AnalysisError, match="observer 1 is inside the source region: 0.095 m"):
+        problem.run_model()
+
+
 def test_observers_can_be_moved(problem):
     problem.set_val("observer_position", 20.0 * OBSERVERS)
     problem.run_model()

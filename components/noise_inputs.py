@@ -1,0 +1,75 @@
+"""What noise of a rotor is heard with: its motion, the air, and the observers."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import openmdao.api as om
+
+from propmdao.acoustics.formulation1a import require_subsonic_tip
+from propmdao.acoustics.observers import require_outside_rotor
+from propmdao.analysis_result import RAD_PER_S
+from propmdao.components.jax_component import Arrays
+from propmdao.components.operating_points import STATIC, OperatingPointsComp
+
+
+def add_noise_inputs(component: OperatingPointsComp, observers: np.ndarray) -> None:
+    """Declare the inputs that `noise_at` reads.
+
+    Parameters
+    ----------
+    component : OperatingPointsComp
+        Component in its ``setup``.
+    observers : (n_observers, 3) array
+        Initial positions [m].
+    """
+    component.add_point_input("rpm", val=4000.0, units="rpm")
+    component.add_point_input("speed", val=0.0, units="m/s")
+    component.add_point_input("density", val=1.225, units="kg/m**3")
+    component.add_point_input("sound_speed", val=340.294, units="m/s")
+    component.add_input("observer_position", val=observers, units="m", tags=STATIC)
+
+
+def noise_at(inputs: Arrays) -> tuple[Any, Any, Any, Any, Any]:
+    """Arguments that all kinds of noise take, in their order.
+
+    Parameters
+    ----------
+    inputs : dict of arrays
+        Inputs by name.
+
+    Returns
+    -------
+    rotation_speed, speed, density, sound_speed, observers : scalar arrays, (n_observers, 3) array
+        In rad/s, and as they are declared.
+    """
+    rpm, speed, density, sound = (
+        inputs[name][0] for name in ("rpm", "speed", "density", "sound_speed")
+    )
+    return rpm * RAD_PER_S, speed, density, sound, inputs["observer_position"]
+
+
+def check_rotor(inputs: Any, nodes: str) -> None:
+    """Refuse blades that reach the speed of sound or an observer.
+
+    Parameters
+    ----------
+    inputs : mapping
+        With those of `add_noise_inputs`.
+    nodes : str
+        Input that holds points of the blade, (..., 3).
+
+    Raises
+    ------
+    om.AnalysisError
+        When the blade tip is not slower than sound, or an observer not outside the rotor.
+    """
+    x, y, _ = np.moveaxis(np.asarray(inputs[nodes]), -1, 0)
+    radius = float(np.hypot(x, y).max())
+    omega, speed, _, sound, observers = noise_at(inputs)
+    try:
+        require_subsonic_tip(radius, float(omega), float(speed), float(sound))
+        require_outside_rotor(observers, radius)
+    except ValueError as error:
+        raise om.AnalysisError(str(error)) from error
