@@ -5,19 +5,22 @@ from __future__ import annotations
 from typing import Any
 
 import jax
-import jax.numpy as jnp
-import numpy as np
 import openmdao.api as om
 
 from propmdao.aerodynamics.coefficients import coefficients
 from propmdao.aerodynamics.known_root import steady_at
-from propmdao.aerodynamics.polars import SectionPolars
 from propmdao.aerodynamics.solution import SteadySolution, failure
 from propmdao.aerodynamics.steady import solve_steady
+from propmdao.analysis_result import RAD_PER_S
 from propmdao.components.jax_component import Arrays, evaluate
-from propmdao.components.operating_points import STATIC, OperatingPointsComp
+from propmdao.components.operating_points import OperatingPointsComp
 from propmdao.components.root_component import RootComponent
-from propmdao.components.section_inputs import add_section_inputs, section_grid, with_inputs
+from propmdao.components.rotor_inputs import (
+    add_rotor_inputs,
+    declare_rotor,
+    require_diameter,
+    rotor_at,
+)
 from propmdao.fidelity import Fidelity
 
 
@@ -30,13 +33,15 @@ def n_loads(fidelity: Fidelity) -> int:
 class AerodynamicsComp(OperatingPointsComp, RootComponent):
     """Steady vortex lattice with its helical wake, hover included.
 
-    With `num_nodes` everything but the blade, `lattice_nodes` and `section_polars`, has a leading
-    axis of that many operating points.
+    With `num_nodes` everything but the blade, `lattice_nodes`, `diameter` and `section_polars`, has
+    a leading axis of that many operating points.
 
     Inputs
     ------
     lattice_nodes : (n_chordwise + 1, n_spanwise + 1, 3) array
         Corner points of the lattice of blade 1, ``m``.
+    diameter : float
+        Of the propeller that the lattice is one of, ``m``.
     rpm : float
         Rotation speed, ``rpm``; where it is exactly 0, every output is 0.
     speed : float
@@ -75,8 +80,6 @@ class AerodynamicsComp(OperatingPointsComp, RootComponent):
         them derivatives are cheap where many are asked for, as missions do.
     n_blades : int
         Number of equally spaced blades.
-    radius : float
-        Tip radius [m].
     fidelity : Fidelity
         Numbers of panels.
     polars : SectionPolars or None
@@ -87,25 +90,20 @@ class AerodynamicsComp(OperatingPointsComp, RootComponent):
     Raises
     ------
     om.AnalysisError
-        When the solution does not converge, with the reason and, where there are several, the node.
+        When the diameter is not positive, or the solution does not converge, with the reason and,
+        where there are several, the node.
     """
 
     def initialize(self) -> None:
         super().initialize()
         self.options.declare("loads", True, types=bool, desc="Whether they are outputs.")
-        self.options.declare("n_blades", types=int, desc="Number of blades.")
-        self.options.declare("radius", types=float, desc="Tip radius [m].")
-        self.options.declare("fidelity", Fidelity(), types=Fidelity, desc="Numbers of panels.")
-        self.options.declare("polars", None, types=SectionPolars, allow_none=True, desc="Or None.")
-        self.options.declare("stall_delay", True, types=bool, desc="Of rotating sections.")
+        declare_rotor(self.options)
 
     def setup(self) -> None:
         fidelity = self.options["fidelity"]
         nc, ns = fidelity.n_chordwise, fidelity.n_spanwise
-        self.add_input("lattice_nodes", shape=(nc + 1, ns + 1, 3), units="m", tags=STATIC)
+        self.constants = add_rotor_inputs(self)
         self._add_rotation_speed()
-        self.add_point_input("speed", val=0.0, units="m/s")
-        self.add_point_input("density", val=1.225, units="kg/m**3")
         self.add_point_output("thrust", units="N", desc="Of all blades.")
         self.add_point_output("torque", units="N*m", desc="Of all blades.")
         self.add_point_output("shaft_power", units="W", desc="Of all blades.")
@@ -114,13 +112,8 @@ class AerodynamicsComp(OperatingPointsComp, RootComponent):
             self.add_point_output(name)
         if self.options["loads"]:
             self._add_loads(nc, ns, n_loads(fidelity))
-        polars, grid = self.options["polars"], None
-        if polars is not None:
-            add_section_inputs(self, polars, ns)
-            grid = section_grid(polars, self.options["stall_delay"])
         self.function, self.state, self.residual = _at_root, "induced_velocity", "residual"
         self.static = self.options["n_blades"]
-        self.constants = jnp.asarray(self.options["radius"]), grid
 
     def _add_rotation_speed(self) -> None:
         self.add_point_input("rpm", val=4000.0, units="rpm")
@@ -141,6 +134,7 @@ class AerodynamicsComp(OperatingPointsComp, RootComponent):
         return evaluate(_steady, self.static, self.constants, inputs)
 
     def check(self, inputs: Any, values: Any) -> None:
+        require_diameter(inputs)
         reason = failure(values["solution"])
         if reason:
             raise om.AnalysisError(
@@ -149,49 +143,41 @@ class AerodynamicsComp(OperatingPointsComp, RootComponent):
 
 
 def _steady(inputs: Arrays, constants: Any, static: int) -> Arrays:
-    solution = solve_steady(*_arguments(inputs, constants, static))
+    omega = inputs["rpm"][0] * RAD_PER_S
+    solution = solve_steady(**rotor_at(inputs, constants), n_blades=static, rotation_speed=omega)
     found = {"induced_velocity": solution.induced_velocity[None], "solution": solution}
-    return {**loads(solution, inputs["rpm"][0], inputs, constants), **found}
+    return {**loads(solution, omega, inputs), **found}
 
 
 def _at_root(inputs: Arrays, constants: Any, static: int) -> Arrays:
-    w = inputs["induced_velocity"][0]
-    solution, residual = steady_at(w, *_arguments(inputs, constants, static))
-    return {
-        **loads(solution, inputs["rpm"][0], inputs, constants),
-        "residual": residual[None],
-    }
+    w, omega = inputs["induced_velocity"][0], inputs["rpm"][0] * RAD_PER_S
+    solution, residual = steady_at(
+        w, **rotor_at(inputs, constants), n_blades=static, rotation_speed=omega
+    )
+    return {**loads(solution, omega, inputs), "residual": residual[None]}
 
 
-def _arguments(inputs: Arrays, constants: Any, n_blades: int) -> tuple[Any, ...]:
-    rpm, speed, density = (inputs[name][0] for name in ("rpm", "speed", "density"))
-    radius, grid = constants
-    operating = radius, rpm * (np.pi / 30.0), speed, density
-    return inputs["lattice_nodes"], n_blades, *operating, with_inputs(grid, inputs)
-
-
-def loads(solution: SteadySolution, rpm: jax.Array, inputs: Arrays, constants: Any) -> Arrays:
+def loads(solution: SteadySolution, omega: jax.Array, inputs: Arrays) -> Arrays:
     """Outputs of the component.
 
     Parameters
     ----------
     solution : SteadySolution
         Loads.
-    rpm : float
-        Rotation speed.
-    inputs, constants
-        Of the component's function.
+    omega : float
+        Rotation speed [rad/s].
+    inputs : dict of arrays
+        Inputs by name.
 
     Returns
     -------
     dict of arrays
         By name, and the rotation speed.
     """
-    omega, radius = rpm * (np.pi / 30.0), constants[0]
-    speed, density = inputs["speed"][0], inputs["density"][0]
-    of = coefficients(solution.thrust, solution.torque, omega, speed, density, 2.0 * radius)
+    speed, density, diameter = (inputs[name][0] for name in ("speed", "density", "diameter"))
+    of = coefficients(solution.thrust, solution.torque, omega, speed, density, diameter)
     return {
-        "rpm": rpm[None],
+        "rpm": (omega / RAD_PER_S)[None],
         "thrust": solution.thrust[None],
         "torque": solution.torque[None],
         "shaft_power": (solution.torque * omega)[None],

@@ -12,6 +12,7 @@ from propmdao.aerodynamics.polars import SectionPolars, blade_tables
 from propmdao.aerodynamics.strips import strip_radii
 from propmdao.components.jax_component import Arrays, JaxComponent
 from propmdao.components.operating_points import STATIC
+from propmdao.components.rotor_inputs import require_diameter
 from propmdao.fidelity import Fidelity
 from propmdao.geometry.blade import Blade, design_lift_coefficient, span_interpolation
 from propmdao.geometry.meshes import blade_meshes, mesh_radii
@@ -49,6 +50,8 @@ class GeometryComp(JaxComponent):
 
     Inputs
     ------
+    diameter : float
+        Initially the propeller's, ``m``; all distributions are over its half, R, and stay so.
     chord_over_R : (n_stations,) array
         Chord over tip radius. All distributions start as the propeller's.
     beta : (n_stations,) array
@@ -76,7 +79,7 @@ class GeometryComp(JaxComponent):
     Options
     -------
     propeller : Propeller
-        Stations, airfoils, radius and initial values.
+        Stations, airfoils and initial values.
     fidelity : Fidelity
         Numbers of panels.
     camber : str
@@ -87,11 +90,12 @@ class GeometryComp(JaxComponent):
     Raises
     ------
     om.AnalysisError
-        When a chord is not positive or a thickness not between 0 and 1 (splines can overshoot).
+        When the diameter or a chord is not positive, or a thickness not between 0 and 1 (splines
+        can overshoot).
     """
 
     def initialize(self) -> None:
-        self.options.declare("propeller", types=Propeller, desc="Stations, airfoils, radius.")
+        self.options.declare("propeller", types=Propeller, desc="Stations, sections.")
         self.options.declare("fidelity", Fidelity(), types=Fidelity, desc="Numbers of panels.")
         self.options.declare(
             "camber", "camber_over_chord", values=CAMBER_INPUTS, desc="How camber is given."
@@ -100,6 +104,7 @@ class GeometryComp(JaxComponent):
 
     def setup(self) -> None:
         propeller, fidelity = self.options["propeller"], self.options["fidelity"]
+        self.add_input("diameter", val=propeller.diameter, units="m", tags=STATIC)
         for name, value in blade_distributions(propeller, self.options["camber"]).items():
             self.add_input(name, val=value, units="rad" if name == "beta" else None, tags=STATIC)
         self.add_output(
@@ -134,6 +139,7 @@ class GeometryComp(JaxComponent):
         )
 
     def check(self, inputs: Any, values: Any) -> None:
+        require_diameter(inputs)
         chord, thickness = inputs["chord_over_R"], inputs["thickness_over_chord"]
         for name, value, holds, rule in (
             ("chord_over_R", chord, chord > 0.0, "be positive"),
@@ -149,7 +155,8 @@ class GeometryComp(JaxComponent):
 
 def _geometry(inputs: Arrays, constants: Any, static: Fidelity) -> Arrays:
     blade, radii, polars, sections = constants
-    changed = dict(inputs)
+    changed = {**inputs, "radius": 0.5 * inputs["diameter"][0]}
+    del changed["diameter"]
     if "design_lift_coefficient" in changed:
         changed["camber_over_chord"] = changed.pop(
             "design_lift_coefficient"

@@ -8,13 +8,13 @@ import numpy as np
 import openmdao.api as om
 
 from propmdao.aerodynamics.polars import SectionPolars, polars_for
-from propmdao.aerodynamics.trim import LARGEST_TIP_SPEED, LEAST_TIP_SPEED
 from propmdao.components.acoustics_comp import AcousticsComp
 from propmdao.components.aerodynamics_comp import AerodynamicsComp, n_loads
 from propmdao.components.broadband_comp import BroadbandComp, declare_trip
 from propmdao.components.geometry_comp import CAMBER_INPUTS, GeometryComp, blade_distributions
 from propmdao.components.operating_points import declare_num_nodes
 from propmdao.components.rotation_speed_comp import RotationSpeedComp
+from propmdao.components.rpm_bounds import declare_bounds
 from propmdao.components.trimmed_aerodynamics_comp import TrimmedAerodynamicsComp
 from propmdao.fidelity import Fidelity
 from propmdao.propeller import Propeller
@@ -41,6 +41,8 @@ class PropellerGroup(om.Group):
         Thrust of all blades, ``N``, with `trim` "thrust"; with "rpm" the input is `rpm`, ``rpm``.
     observer_position : (n_observers, 3) array
         From the rotor centre, flying along, ``m``.
+    diameter : float
+        Initially the propeller's, ``m``; distributions are over its half and grow along.
     chord_over_R, beta, sweep_over_R, rake_over_R, thickness_over_chord, camber_over_chord :
         Distributions at the propeller's stations, `beta` in ``rad``, initially the propeller's.
         One that is named in `design_distributions` is replaced by its control points,
@@ -76,9 +78,9 @@ broadband_mean_square_pressure, band_frequency
         Numbers of panels and harmonics.
     trim : str
         ``"thrust"``: the rotation speed follows from `thrust_required`; ``"rpm"``: it is given.
-    rpm_bounds : (float, float)
-        Where the rotation speed is looked for [rpm]; by default where the tip turns at 0.01 to 0.9
-        of the standard speed of sound.
+    rpm_bounds : (float, float) or None
+        Where the rotation speed is looked for [rpm]; None (default): where the tip of the present
+        diameter turns at 0.01 to 0.9 of the standard speed of sound.
     trim_method : str
         ``"solve"``: the thrust is the required one (`TrimmedAerodynamicsComp`). ``"two_point"``:
         the rule of the thesis, which misses it by some per cent (`RotationSpeedComp`).
@@ -117,7 +119,7 @@ broadband_mean_square_pressure, band_frequency
         declare("observers", None, types=np.ndarray, allow_none=True, desc="Positions [m].")
         declare("fidelity", Fidelity(), types=Fidelity, desc="Panels and harmonics.")
         declare("trim", "thrust", values=("thrust", "rpm"), desc="What is given.")
-        declare("rpm_bounds", None, types=tuple, allow_none=True, desc="Lowest and highest rpm.")
+        declare_bounds(self.options)
         declare("trim_method", "solve", values=TRIM_METHODS, desc="How the rpm is found.")
         declare("design_distributions", {}, types=dict, desc="Name -> r/R of control points.")
         declare("spline_method", "slinear", values=SPLINE_METHODS, desc="Through control points.")
@@ -140,24 +142,22 @@ broadband_mean_square_pressure, band_frequency
             GeometryComp(
                 propeller=propeller, fidelity=fidelity, camber=options["camber"], polars=polars
             ),
+            promotes_inputs=["diameter"],
             promotes_outputs=["*"],
         )
+        self.set_input_defaults("diameter", val=propeller.diameter, units="m")
         for name in blade_distributions(propeller, options["camber"]):
             self._promote_distribution("geometry", name)
         observers = options["observers"]
         rotor = {
             "num_nodes": options["num_nodes"],
             "n_blades": int(propeller.n_blades),
-            "radius": 0.5 * propeller.diameter,
             "fidelity": fidelity,
             "polars": polars,
             "stall_delay": options["stall_delay"],
         }
         if options["trim"] == "thrust":
-            rotor["rpm_bounds"] = options["rpm_bounds"] or tuple(
-                tip_speed / rotor["radius"] * 30.0 / np.pi
-                for tip_speed in (LEAST_TIP_SPEED, LARGEST_TIP_SPEED)
-            )
+            rotor["rpm_bounds"] = options["rpm_bounds"]
         trimmed = options["trim"] == "thrust" and options["trim_method"] == "solve"
         if options["trim"] == "thrust" and not trimmed:
             self.add_subsystem("rotation_speed", RotationSpeedComp(**rotor), promotes=["*"])

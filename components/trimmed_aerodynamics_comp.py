@@ -4,19 +4,15 @@ from __future__ import annotations
 
 from typing import Any
 
-import jax
-import numpy as np
 import openmdao.api as om
 
 from propmdao.aerodynamics.known_root import trimmed_at
-from propmdao.aerodynamics.trim import TrimError, steady_for_thrust
+from propmdao.aerodynamics.trim import TrimError, require_reached, solve_trimmed
+from propmdao.analysis_result import RAD_PER_S
 from propmdao.components.aerodynamics_comp import AerodynamicsComp, loads
-from propmdao.components.jax_component import Arrays
-from propmdao.components.section_inputs import with_inputs
-
-_RAD_PER_S = np.pi / 30.0
-_AIR_AND_THRUST = ("speed", "density", "thrust_required")
-_loads = jax.jit(loads)
+from propmdao.components.jax_component import Arrays, evaluate
+from propmdao.components.rotor_inputs import require_diameter, rotor_at
+from propmdao.components.rpm_bounds import bounds_at, declare_bounds, given_bounds
 
 
 class TrimmedAerodynamicsComp(AerodynamicsComp):
@@ -29,7 +25,7 @@ class TrimmedAerodynamicsComp(AerodynamicsComp):
     ------
     thrust_required : float
         Thrust of all blades, ``N``; of exactly 0 a propeller that stands still.
-    lattice_nodes, speed, density, section_polars, sound_speed
+    lattice_nodes, diameter, speed, density, section_polars, sound_speed
         As `AerodynamicsComp` takes them.
 
     Outputs
@@ -42,83 +38,68 @@ load_force, section_speed, section_lift_coefficient
 
     Options
     -------
-    rpm_bounds : (float, float)
-        Lowest and highest rotation speed [rpm].
-    num_nodes, loads, n_blades, radius, fidelity, polars, stall_delay
+    rpm_bounds : (float, float) or None
+        Lowest and highest rotation speed [rpm]; None (default): where the tip of the diameter turns
+        at 0.01 to 0.9 of the standard speed of sound.
+    num_nodes, loads, n_blades, fidelity, polars, stall_delay
         As `AerodynamicsComp` takes them.
 
     Raises
     ------
     om.AnalysisError
-        When the thrust is out of reach between the bounds, with the thrust at both, or the solution
-        does not converge, with the reason and, where there are several, the node.
+        When the diameter is not positive, the thrust is out of reach between the bounds, with the
+        thrust at both, or the solution does not converge, with the reason and, where there are
+        several, the node.
     """
 
     def initialize(self) -> None:
         super().initialize()
-        self.options.declare("rpm_bounds", types=tuple, desc="Lowest and highest rpm.")
+        declare_bounds(self.options)
 
     def setup(self) -> None:
-        require_bounds(self.options["rpm_bounds"])
         super().setup()
+        self._bounds = given_bounds(self.options)
         self.function, self.state, self.residual = _at_root, "rotation_speed", "missing_thrust"
-        self.of_state = {"rpm": 1.0 / _RAD_PER_S}
+        self.of_state = {"rpm": 1.0 / RAD_PER_S}
 
     def _add_rotation_speed(self) -> None:
         self.add_point_input("thrust_required", val=1.0, units="N")
-        self.add_point_output("rpm", val=np.sqrt(np.prod(self.options["rpm_bounds"])), units="rpm")
+        self.add_point_output("rpm", val=4000.0, units="rpm")
 
     def at_rest(self, inputs: Arrays) -> bool:
         return not inputs["thrust_required"].any()
 
     def solve(self, inputs: Arrays) -> Any:
-        radius, grid = self.constants
-        low, high = (rpm * _RAD_PER_S for rpm in self.options["rpm_bounds"])
-        speed, density, thrust = (inputs[name][0] for name in _AIR_AND_THRUST)
+        return evaluate(_trimmed, self.static, (self.constants, self._bounds), inputs)
+
+    def check(self, inputs: Any, values: Any) -> None:
+        require_diameter(inputs)
+        found = values["rotation_speed"][0], values["missing_at_bounds"]
+        asked = _asked(inputs, (self.constants, self._bounds))
         try:
-            omega, solution = steady_for_thrust(
-                inputs["lattice_nodes"],
-                self.options["n_blades"],
-                radius,
-                speed,
-                density,
-                thrust,
-                (low, high),
-                with_inputs(grid, inputs),
-            )
+            require_reached(*found, **asked, n_blades=self.options["n_blades"])
         except TrimError as error:
             raise om.AnalysisError(str(error)) from error
-        outputs = _loads(solution, omega / _RAD_PER_S, inputs, self.constants)
-        return {**outputs, "rotation_speed": omega[None], "solution": solution}
+        super().check(inputs, values)
 
 
-def require_bounds(rpm_bounds: tuple[float, float]) -> None:
-    """Refuse bounds that are none.
+def _trimmed(inputs: Arrays, constants: Any, static: int) -> Arrays:
+    omega, missing, solution = solve_trimmed(**_asked(inputs, constants), n_blades=static)
+    found = {"rotation_speed": omega[None], "missing_at_bounds": missing, "solution": solution}
+    return {**loads(solution, omega, inputs), **found}
 
-    Parameters
-    ----------
-    rpm_bounds : (float, float)
-        Lowest and highest rotation speed [rpm].
 
-    Raises
-    ------
-    ValueError
-        Where they are not positive and rising.
-    """
-    low, high = rpm_bounds
-    if not 0.0 < low < high:
-        raise ValueError(f"rpm_bounds must be positive and rising; they are {low:g}, {high:g}")
+def _asked(inputs: Arrays, constants: Any) -> dict[str, Any]:
+    grid, bounds = constants
+    low, high = bounds_at(inputs, bounds)
+    thrust = inputs["thrust_required"][0]
+    return {**rotor_at(inputs, grid), "thrust_required": thrust, "low": low, "high": high}
 
 
 def _at_root(inputs: Arrays, constants: Any, static: int) -> Arrays:
-    radius, grid = constants
     omega = inputs["rotation_speed"][0]
-    speed, density, thrust = (inputs[name][0] for name in _AIR_AND_THRUST)
-    sections = with_inputs(grid, inputs)
+    rotor = rotor_at(inputs, constants)
     solution, missing = trimmed_at(
-        omega, inputs["lattice_nodes"], static, radius, speed, density, thrust, sections
+        omega, **rotor, n_blades=static, thrust_required=inputs["thrust_required"][0]
     )
-    return {
-        **loads(solution, omega / _RAD_PER_S, inputs, constants),
-        "missing_thrust": missing[None],
-    }
+    return {**loads(solution, omega, inputs), "missing_thrust": missing[None]}

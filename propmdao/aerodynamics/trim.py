@@ -102,7 +102,7 @@ def rotation_speed_for_thrust(
     """
     asked = _asked(nodes, n_blades, radius, speed, density, thrust_required, bounds, sections)
     omega, missing = solve_rotation_speed(*asked)
-    _require_reached(omega, missing, asked)
+    require_reached(omega, missing, *asked)
     return omega
 
 
@@ -137,7 +137,7 @@ def steady_for_thrust(
     """
     asked = _asked(nodes, n_blades, radius, speed, density, thrust_required, bounds, sections)
     omega, missing, solution = solve_trimmed(*asked)
-    _require_reached(omega, missing, asked)
+    require_reached(omega, missing, *asked)
     return omega, solution
 
 
@@ -162,18 +162,42 @@ def _asked(
     return nodes, n_blades, *operating, low, high, sections
 
 
-def _require_reached(omega: Array, missing: tuple[Array, Array], asked: _Asked) -> None:
-    """Refuse a rotation speed that the bounds do not enclose, with the thrust at both."""
+def require_reached(
+    rotation_speed: Scalar,
+    missing: tuple[Scalar, Scalar],
+    nodes: Array,
+    n_blades: int,
+    radius: Scalar,
+    speed: Scalar,
+    density: Scalar,
+    thrust_required: Scalar,
+    low: Scalar,
+    high: Scalar,
+    sections: ViscousSections | None = None,
+) -> None:
+    """Refuse a rotation speed that the bounds do not enclose; call it outside ``jit``.
+
+    Parameters
+    ----------
+    rotation_speed, missing : float, (float, float)
+        Of `solve_rotation_speed` or `solve_trimmed`.
+    nodes, n_blades, radius, speed, density, thrust_required, low, high, sections
+        As these took them.
+
+    Raises
+    ------
+    TrimError
+        The thrust required lies outside what the bounds give; the message has both ends.
+    """
     at_low, at_high = missing
-    if at_low >= 0.0 >= at_high and np.isfinite(omega):
+    if at_low >= 0.0 >= at_high and np.isfinite(rotation_speed):
         return
-    nodes, n_blades, radius, speed, density, thrust, low, high, sections = asked
     at = [
         float(solve_steady(nodes, n_blades, radius, end, speed, density, sections).thrust)
         for end in (low, high)
     ]
     raise TrimError(
-        f"thrust {thrust:g} N is out of reach at {speed:g} m/s: "
+        f"thrust {thrust_required:g} N is out of reach at {speed:g} m/s: "
         f"{at[0]:.4g} N at {low * _RPM:g} rpm, {at[1]:.4g} N at {high * _RPM:g} rpm"
     )
 

@@ -11,7 +11,8 @@ from propmdao.aerodynamics.strips import strip_radii
 from propmdao.components import AerodynamicsComp, RotationSpeedComp, TrimmedAerodynamicsComp
 from propmdao.geometry.blade import Blade, span_interpolation
 
-STEPS = {"lattice_nodes": 1e-6, "speed": 1e-3, "density": 1e-4}
+DIAMETER = 0.2794
+STEPS = {"lattice_nodes": 1e-6, "diameter": 1e-5, "speed": 1e-3, "density": 1e-4}
 
 
 @pytest.fixture(scope="module")
@@ -21,14 +22,14 @@ def nodes(meshes):
 
 @pytest.fixture(scope="module")
 def rotor(small):
-    return {"n_blades": 2, "radius": 0.1397, "fidelity": small}
+    return {"n_blades": 2, "fidelity": small}
 
 
 def problem(comp, **values):
     prob = om.Problem(reports=False)
     prob.model.add_subsystem("comp", comp, promotes=["*"])
     prob.setup()
-    for name, value in values.items():
+    for name, value in {"diameter": DIAMETER, **values}.items():
         prob.set_val(name, value)
     return prob
 
@@ -97,6 +98,7 @@ def test_stall_delay_is_an_option(viscous):
 
 SCALES = {
     "lattice_nodes": 1e-5,
+    "diameter": 1e-3,
     "section_polars": 1e-3,
     "speed": 0.1,
     "density": 1e-2,

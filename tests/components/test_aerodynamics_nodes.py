@@ -18,6 +18,7 @@ GIVEN = {
 }
 SCALES = {
     "lattice_nodes": 1e-5,
+    "diameter": 1e-3,
     "section_polars": 1e-3,
     "speed": 0.1,
     "density": 1e-2,
@@ -34,13 +35,11 @@ def problem(meshes, small, polars):
     def problem(kind, num_nodes, values, **options):
         if kind is not AerodynamicsComp:
             options["rpm_bounds"] = (1000.0, 9000.0)
-        comp = kind(
-            n_blades=2, radius=0.1397, fidelity=small, polars=polars, num_nodes=num_nodes, **options
-        )
+        comp = kind(n_blades=2, fidelity=small, polars=polars, num_nodes=num_nodes, **options)
         prob = om.Problem(reports=False)
         prob.model.add_subsystem("comp", comp, promotes=["*"])
         prob.setup()
-        for name in ("lattice_nodes", "section_polars"):
+        for name in ("lattice_nodes", "diameter", "section_polars"):
             prob.set_val(name, meshes.get_val(name))
         for name, value in values.items():
             prob.set_val(name, value)

@@ -61,6 +61,7 @@ def test_partials_with_polars(problem, propeller, polars, assert_directional):
     prob = problem(propeller=propeller, polars=polars)
     prob.run_model()
     scales = {
+        "diameter": 1e-3,
         "chord_over_R": 1e-3,
         "beta": 1e-3,
         "sweep_over_R": 1e-3,

@@ -184,6 +184,7 @@ def test_totals_against_differences(problem, assert_totals, trim, speed):
     of = ["thrust", "torque", "spl_bpf_db", "oaspl_dba", "oaspl_broadband_db", "oaspl_total_dba"]
     of[:1] = ["thrust"] if trim == "rpm" else ["rpm"]
     scales = {
+        "diameter": 1e-3,
         "beta_cp": 1e-2,
         "thickness_over_chord_cp": 1e-3,
         "chord_over_R": 1e-3,

@@ -122,6 +122,7 @@ def test_totals_against_differences(problem, trim, assert_totals):
     values = POINTS if trim == "thrust" else AT_RPM
     prob = problem(2, values, trim=trim, observers=OBSERVERS)
     scales = {
+        "diameter": 1e-3,
         "beta": 1e-2,
         "chord_over_R": 1e-3,
         "speed": 0.1,
