@@ -43,11 +43,13 @@ ROWS: tuple[Row, ...] = (
     ("thrust, N", "thrust", ".4f"),
     ("torque, mN m", "torque", ".3f"),
     ("tones, soft maximum, dB", "tones", ".2f"),
+    ("  thickness noise, dB", "thickness", ".2f"),
+    ("  loading noise, dB", "loading", ".2f"),
     ("total, soft maximum, dBA", "total", ".2f"),
     ("  without laminar shedding", "tripped", ".2f"),
     ("tones at -45 deg, dB", "tones_at", ".2f"),
-    ("  thickness noise, dB", "thickness_at", ".2f"),
-    ("  loading noise, dB", "loading_at", ".2f"),
+    ("  thickness at -45 deg, dB", "thickness_at", ".2f"),
+    ("  loading at -45 deg, dB", "loading_at", ".2f"),
     ("broadband at -45 deg, dB", "broadband_at", ".2f"),
     ("mean r/R of the thrust", "thrust_radius", ".3f"),
     ("blade area, cm2", "area", ".1f"),
@@ -58,7 +60,7 @@ ROWS: tuple[Row, ...] = (
 STEPS = {"": "none: the start", "beta": "+ blade angle", "chord_over_R": "+ chord",
          "camber_over_chord": "+ camber", "thickness_over_chord": "+ thickness",
          "sweep_over_R": "+ sweep: the optimum"}  # fmt: skip
-BY_STEP = ("rpm", "torque", "tones", "thickness_at", "loading_at", "total", "tripped")
+BY_STEP = ("rpm", "torque", "tones", "thickness", "loading", "total", "tripped")
 Design = dict[str, np.ndarray]  # control points by distribution
 
 
@@ -88,6 +90,8 @@ def column(propeller: Propeller, of: Analysis) -> dict[str, Cell]:
         "thrust": float(of.steady.thrust),
         "torque": 1e3 * float(of.steady.torque),
         "tones": soft_maximum_db(oaspl_db(pressure.total[:n]), p),
+        "thickness": soft_maximum_db(oaspl_db(pressure.thickness[:n]), p),
+        "loading": soft_maximum_db(oaspl_db(pressure.loading[:n]), p),
         "total": soft_maximum_db([one["oaspl_dba"] for one in heard[:n]], p),
         "tripped": soft_maximum_db(turbulent, p),
         "tones_at": float(oaspl_db(pressure.total[at])),
@@ -194,12 +198,14 @@ def draw(results: Results, output: Path) -> None:
         tones[name] = oaspl_db(of.tones.total[n:])
         total[name] = [one["oaspl_dba"] for one in heard[n:]]
         bands[name] = [one["spl_db"] for one in heard[n + thesis.MICROPHONE_INDEX]["broadband"]]
+    spectrum = acoustic_plots.third_octaves(BANDS_HZ, bands)
+    spectrum.axes[0].set_xlim(left=500.0)  # nothing is drawn below
     for name, figure in (
         ("history", optimisation_plots.history(runs, "objective, dB or dBA", TOLERANCE)),
         ("blades", plots.blades(results.blades, [0.15, 0.5, 0.85])),
         ("tones", directivity_plots.directivity(elevations, tones, label="tones")),
         ("total", directivity_plots.directivity(elevations, total, label="A-weighted total")),
-        ("broadband", acoustic_plots.third_octaves(BANDS_HZ, bands)),
+        ("broadband", spectrum),
     ):
         figure.savefig(output / f"{name}.png")
 

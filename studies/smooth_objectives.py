@@ -143,6 +143,13 @@ def derivative_errors(lines: list[Line]) -> Array:
     return np.abs(exact - central).max(axis=0) / np.abs(exact).max(axis=0)
 
 
+def survey(n_lines: int = 3, n: int = 201) -> tuple[Array, list[Suspect], Array]:
+    """Scan random lines: values, places that are least smooth, errors of the derivatives."""
+    prob = free_form.build_problem("total", np.inf, np.inf)
+    lines = [random_line(prob, seed) for seed in range(n_lines)]
+    return *scan(lines, n), derivative_errors(lines)
+
+
 def rows(values: Array, found: list[Suspect], errors: Array) -> Rows:
     """Table by response, its head first."""
     table: Rows = [("response", "range", "largest second difference", "least power",
@@ -154,7 +161,8 @@ def rows(values: Array, found: list[Suspect], errors: Array) -> Rows:
             (label, f"{np.nanmax(of) - np.nanmin(of):.3g}", f"{second:.1e}", f"{min(powers):.2f}",
              f"{errors[k]:.0e}", f"{sum(p < KINK for p in powers)}")
         )  # fmt: skip
-    return table
+    failed = f"{np.isnan(values).any(axis=2).sum()} of {values[..., 0].size}"
+    return [*table, ("analyses that failed", failed, "", "", "", "")]
 
 
 def main() -> None:
@@ -171,24 +179,24 @@ def main() -> None:
     if options.quick:
         thesis.FIDELITY = QUICK
 
-    prob = free_form.build_problem("total", np.inf, np.inf)
-    lines = [random_line(prob, seed) for seed in range(options.lines)]
-    values, found = scan(lines, options.points)
-    print(markdown(rows(values, found, derivative_errors(lines))))
+    values, found, errors = survey(options.lines, options.points)
+    print(markdown(rows(values, found, errors)))
     for name, line, position, of in sorted(found, key=lambda one: one.power)[:5]:
         print(f"{name}: line {line} at {position:.4f}, power {of:.2f}")
-    print(f"{np.isnan(values).any(axis=2).sum()} of {values[..., 0].size} analyses failed.")
     with (output / "smooth_objectives.csv").open("w", newline="", encoding="utf-8") as stream:
         writer = csv.writer(stream)
         writer.writerow(["line", "position", *RESPONSES])
         for number, line_values in enumerate(values):
             for at, row in zip(np.linspace(0.0, 1.0, options.points), line_values, strict=True):
                 writer.writerow([number, at, *row])
-    optimisation_plots.line_scans(
+    figure = optimisation_plots.line_scans(
         np.linspace(0.0, 1.0, options.points),
         {name: values[..., k] for k, name in enumerate(RESPONSES)},
         {name: label for name, (_, label) in RESPONSES.items()},
-    ).savefig(output / "scans.png")
+    )
+    first = figure.axes[0]
+    first.legend(first.lines, [f"line {number}" for number in range(options.lines)])
+    figure.savefig(output / "scans.png")
     print(f"Table and figure: {output}")
 
 
