@@ -71,15 +71,26 @@ def polars(propeller):
 
 
 @pytest.fixture(scope="session")
-def meshes(propeller, small, polars):
+def meshes(propeller, small, polars, problem_of):
     """Problem that holds the meshes of the small blade and its ``section_polars``."""
-    prob = om.Problem(reports=False)
-    prob.model.add_subsystem(
-        "comp", GeometryComp(propeller=propeller, fidelity=small, polars=polars), promotes=["*"]
-    )
-    prob.setup()
+    prob = problem_of(GeometryComp(propeller=propeller, fidelity=small, polars=polars))
     prob.run_model()
     return prob
+
+
+@pytest.fixture(scope="session")
+def problem_of():
+    """``problem_of(component, **values)``: its Problem, set up, where it is ``prob.model.comp``."""
+
+    def problem_of(component, **values):
+        prob = om.Problem(reports=False)
+        prob.model.add_subsystem("comp", component, promotes=["*"])
+        prob.setup()
+        for name, value in values.items():
+            prob.set_val(name, value)
+        return prob
+
+    return problem_of
 
 
 @pytest.fixture(scope="session")

@@ -19,20 +19,22 @@ FORCE = np.array([[0.02, -0.08, -0.15], [0.01, -0.12, -0.3], [0.01, -0.1, -0.25]
 
 
 @pytest.fixture
-def problem(meshes, small):
-    prob = om.Problem(reports=False)
-    prob.model.add_subsystem(
-        "comp",
-        AcousticsComp(n_blades=2, n_loads=3, observers=OBSERVERS, fidelity=small),
-        promotes=["*"],
-    )
-    prob.setup()
-    prob.set_val("surface_nodes", meshes.get_val("surface_nodes"))
-    prob.set_val("load_position", POSITION)
-    prob.set_val("load_force", FORCE)
-    prob.set_val("rpm", 6000.0)
-    prob.set_val("speed", 8.0)
-    return prob
+def problem_at(meshes, small, problem_of):
+    """Problem with an `AcousticsComp` of so many nodes and the given values."""
+
+    def problem_at(num_nodes, **values):
+        comp = AcousticsComp(
+            n_blades=2, n_loads=3, observers=OBSERVERS, fidelity=small, num_nodes=num_nodes
+        )
+        loads = {"load_position": POSITION, "load_force": FORCE}
+        return problem_of(comp, surface_nodes=meshes.get_val("surface_nodes"), **(loads | values))
+
+    return problem_at
+
+
+@pytest.fixture
+def problem(problem_at):
+    return problem_at(None, rpm=6000.0, speed=8.0)
 
 
 def test_levels_are_those_of_formulation_1a(problem):
@@ -66,37 +68,22 @@ def test_acoustic_partials(problem, assert_partials):
     assert_partials(problem, steps, 1e-5)
 
 
-def at_nodes(meshes, small, num_nodes, **values):
-    prob = om.Problem(reports=False)
-    comp = AcousticsComp(
-        n_blades=2, n_loads=3, observers=OBSERVERS, fidelity=small, num_nodes=num_nodes
-    )
-    prob.model.add_subsystem("comp", comp, promotes=["*"])
-    prob.setup()
-    prob.set_val("surface_nodes", meshes.get_val("surface_nodes"))
-    for name, value in {"load_position": POSITION, "load_force": FORCE, **values}.items():
-        prob.set_val(name, value)
-    return prob
-
-
-def test_each_node_is_heard_as_if_alone(meshes, small):
+def test_each_node_is_heard_as_if_alone(problem_at):
     points = [
         {"load_force": FORCE, "rpm": 6000.0, "speed": 8.0, "density": 1.2, "sound_speed": 340.0},
         {"load_force": 2 * FORCE, "rpm": 5000.0, "speed": 0.0, "density": 1.0, "sound_speed": 320},
     ]
-    both = at_nodes(
-        meshes, small, 2, **{n: np.array([point[n] for point in points]) for n in points[0]}
-    )
+    both = problem_at(2, **{n: np.array([point[n] for point in points]) for n in points[0]})
     both.run_model()
     for node, point in enumerate(points):
-        one = at_nodes(meshes, small, None, **point)
+        one = problem_at(None, **point)
         one.run_model()
         for name in one.model.comp.get_io_metadata(iotypes="output"):
             assert_allclose(both.get_val(name)[node], one.get_val(name), rtol=1e-12, err_msg=name)
 
 
-def test_partials_at_nodes(meshes, small, assert_directional):
-    prob = at_nodes(meshes, small, 2, rpm=[6000.0, 5000.0], speed=[8.0, 2.0])
+def test_partials_at_nodes(problem_at, assert_directional):
+    prob = problem_at(2, rpm=[6000.0, 5000.0], speed=[8.0, 2.0])
     prob.run_model()
     scales = {
         "surface_nodes": 1e-5,
@@ -112,8 +99,8 @@ def test_partials_at_nodes(meshes, small, assert_directional):
 
 
 @pytest.mark.parametrize("num_nodes", [None, 2])
-def test_standing_still_is_silence_with_finite_derivatives(meshes, small, num_nodes):
-    prob = at_nodes(meshes, small, num_nodes, rpm=0.0, speed=0.0, load_force=0.0)
+def test_standing_still_is_silence_with_finite_derivatives(problem_at, num_nodes):
+    prob = problem_at(num_nodes, rpm=0.0, speed=0.0, load_force=0.0)
     prob.run_model()
     assert_allclose(prob.get_val("oaspl_db"), -200.0)
     assert_allclose(prob.get_val("mean_square_pressure"), 0.0)

@@ -25,23 +25,21 @@ def rotor(small):
     return {"n_blades": 2, "fidelity": small}
 
 
-def problem(comp, **values):
-    prob = om.Problem(reports=False)
-    prob.model.add_subsystem("comp", comp, promotes=["*"])
-    prob.setup()
-    for name, value in {"diameter": DIAMETER, **values}.items():
-        prob.set_val(name, value)
-    return prob
+@pytest.fixture(scope="module")
+def problem(nodes, problem_of):
+    """Problem of a component with the small blade, at 8 m/s, and the given values."""
+    blade = {"lattice_nodes": nodes, "diameter": DIAMETER, "speed": 8.0}
+    return lambda comp, **values: problem_of(comp, **(blade | values))
 
 
 # --- aerodynamics -------------------------------------------------------------------------------
 
 
-def test_values_are_those_of_the_steady_lattice(nodes, rotor):
-    prob = problem(AerodynamicsComp(**rotor), lattice_nodes=nodes, rpm=4200.0, speed=8.0)
+def test_values_are_those_of_the_steady_lattice(nodes, problem, rotor):
+    prob = problem(AerodynamicsComp(**rotor), rpm=4200.0)
     prob.run_model()
     omega = 4200.0 * np.pi / 30.0
-    solution = solve_steady(nodes, 2, 0.1397, omega, 8.0, 1.225)
+    solution = solve_steady(nodes, 2, DIAMETER / 2, omega, 8.0, 1.225)
     thrust, torque = float(solution.thrust), float(solution.torque)
     assert thrust > 0.5
     assert_allclose(prob.get_val("thrust"), thrust, rtol=1e-12)
@@ -57,13 +55,12 @@ def test_values_are_those_of_the_steady_lattice(nodes, rotor):
 
 
 @pytest.fixture(scope="module")
-def viscous(meshes, rotor, polars):
+def viscous(meshes, problem, rotor, polars):
     """Problem with an `AerodynamicsComp` held to polars, at 4200 rpm."""
 
     def viscous(speed, **options):
         prob = problem(
             AerodynamicsComp(**{**rotor, **options}, polars=polars),
-            lattice_nodes=meshes.get_val("lattice_nodes"),
             section_polars=meshes.get_val("section_polars"),
             rpm=4200.0,
             speed=speed,
@@ -78,7 +75,7 @@ def test_viscous_values_are_those_of_the_steady_lattice(viscous, nodes, propelle
     prob = viscous(8.0)
     middle = span_interpolation(propeller.r_over_R, strip_radii(propeller.r_over_R[0], 4))
     sections = viscous_sections(polars, Blade.from_propeller(propeller), middle, 340.294)
-    solution = solve_steady(nodes, 2, 0.1397, 4200.0 * np.pi / 30.0, 8.0, 1.225, sections)
+    solution = solve_steady(nodes, 2, DIAMETER / 2, 4200.0 * np.pi / 30.0, 8.0, 1.225, sections)
     for name, value in (
         ("thrust", solution.thrust),
         ("torque", solution.torque),
@@ -120,22 +117,22 @@ def test_aerodynamic_partials(viscous, assert_directional, speed, forward):
 
 @pytest.mark.slow
 @pytest.mark.parametrize("speed", [0.0, 8.0])
-def test_inviscid_aerodynamic_partials(nodes, rotor, assert_partials, speed):
-    prob = problem(AerodynamicsComp(**rotor), lattice_nodes=nodes, rpm=4200.0, speed=speed)
+def test_inviscid_aerodynamic_partials(problem, rotor, assert_partials, speed):
+    prob = problem(AerodynamicsComp(**rotor), rpm=4200.0, speed=speed)
     prob.run_model()
     assert_partials(prob, {**STEPS, "rpm": 0.1}, 1e-5)
 
 
-def test_rpm_zero_gives_zero_loads(nodes, rotor):
-    prob = problem(AerodynamicsComp(**rotor), lattice_nodes=nodes, rpm=0.0, speed=8.0)
+def test_rpm_zero_gives_zero_loads(problem, rotor):
+    prob = problem(AerodynamicsComp(**rotor), rpm=0.0)
     prob.run_model()
     for name in ("thrust", "torque", "shaft_power", "efficiency", "CT", "load_force"):
         assert_allclose(prob.get_val(name), 0.0)
 
 
-def test_windmill_beyond_momentum_theory_is_a_failed_analysis(nodes, rotor):
+def test_windmill_beyond_momentum_theory_is_a_failed_analysis(problem, rotor):
     many_blades = AerodynamicsComp(**{**rotor, "n_blades": 24})
-    prob = problem(many_blades, lattice_nodes=nodes, rpm=1000.0, speed=20.0)
+    prob = problem(many_blades, rpm=1000.0, speed=20.0)
     with pytest.raises(om.AnalysisError, match="momentum theory: .*limit, at 1000 rpm and 20 m/s"):
         prob.run_model()
 
@@ -144,18 +141,18 @@ def test_windmill_beyond_momentum_theory_is_a_failed_analysis(nodes, rotor):
 
 
 @pytest.fixture
-def trim(nodes, rotor):
+def trim(problem, rotor):
     """Problem with a component that finds the rotation speed for a thrust."""
 
     def trim(thrust, component=TrimmedAerodynamicsComp, **options):
         options = {**rotor, "rpm_bounds": (2000.0, 9000.0), **options}
-        return problem(component(**options), lattice_nodes=nodes, speed=8.0, thrust_required=thrust)
+        return problem(component(**options), thrust_required=thrust)
 
     return trim
 
 
 def thrust_at(nodes, rpm):
-    return float(solve_steady(nodes, 2, 0.1397, rpm * np.pi / 30.0, 8.0, 1.225).thrust)
+    return float(solve_steady(nodes, 2, DIAMETER / 2, rpm * np.pi / 30.0, 8.0, 1.225).thrust)
 
 
 @pytest.mark.parametrize("thrust", [0.5, 1.2, 6.0])
@@ -166,11 +163,11 @@ def test_thrust_is_the_required_one(nodes, trim, thrust):
     assert_allclose(prob.get_val("thrust"), thrust, rtol=1e-6)
 
 
-def test_trimmed_loads_are_those_at_the_rotation_speed_found(nodes, trim, rotor):
+def test_trimmed_loads_are_those_at_the_rotation_speed_found(problem, trim, rotor):
     trimmed = trim(1.2)
     trimmed.run_model()
     rpm = trimmed.get_val("rpm")
-    at_rpm = problem(AerodynamicsComp(**rotor), lattice_nodes=nodes, rpm=rpm, speed=8.0)
+    at_rpm = problem(AerodynamicsComp(**rotor), rpm=rpm)
     at_rpm.run_model()
     for name in at_rpm.model.comp.get_io_metadata(iotypes="output"):
         # the trim is good to 1e-8 of the rotation speed

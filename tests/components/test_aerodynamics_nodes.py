@@ -29,20 +29,15 @@ SCALES = {
 
 
 @pytest.fixture
-def problem(meshes, small, polars):
+def problem(meshes, small, polars, problem_of):
     """Problem with a component of so many nodes at the given values."""
 
     def problem(kind, num_nodes, values, **options):
         if kind is not AerodynamicsComp:
             options["rpm_bounds"] = (1000.0, 9000.0)
         comp = kind(n_blades=2, fidelity=small, polars=polars, num_nodes=num_nodes, **options)
-        prob = om.Problem(reports=False)
-        prob.model.add_subsystem("comp", comp, promotes=["*"])
-        prob.setup()
-        for name in ("lattice_nodes", "diameter", "section_polars"):
-            prob.set_val(name, meshes.get_val(name))
-        for name, value in values.items():
-            prob.set_val(name, value)
+        blade = {n: meshes.get_val(n) for n in ("lattice_nodes", "diameter", "section_polars")}
+        prob = problem_of(comp, **blade, **values)
         prob.run_model()
         return prob
 

@@ -39,20 +39,14 @@ SCALES = {
 
 
 @pytest.fixture
-def problem_at(meshes, propeller, small):
+def problem_at(meshes, propeller, small, problem_of):
     """Problem with a `BroadbandComp` of so many nodes and the given values."""
 
     def problem_at(num_nodes, **values):
-        prob = om.Problem(reports=False)
         comp = BroadbandComp(
             propeller=propeller, observers=OBSERVERS, fidelity=small, num_nodes=num_nodes
         )
-        prob.model.add_subsystem("comp", comp, promotes=["*"])
-        prob.setup()
-        prob.set_val("lattice_nodes", meshes.get_val("lattice_nodes"))
-        for name, value in values.items():
-            prob.set_val(name, value)
-        return prob
+        return problem_of(comp, lattice_nodes=meshes.get_val("lattice_nodes"), **values)
 
     return problem_at
 

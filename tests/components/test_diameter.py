@@ -120,12 +120,9 @@ def test_no_diameter_is_a_failed_analysis(problem, diameter):
 
 
 @pytest.mark.parametrize("kind", [AerodynamicsComp, TrimmedAerodynamicsComp, RotationSpeedComp])
-def test_no_diameter_is_a_failed_analysis_of_a_component(kind, small, meshes):
-    prob = om.Problem(reports=False)
-    prob.model.add_subsystem("comp", kind(n_blades=2, fidelity=small), promotes=["*"])
-    prob.setup()
-    prob.set_val("lattice_nodes", meshes.get_val("lattice_nodes"))
-    prob.set_val("diameter", -0.2)
+def test_no_diameter_is_a_failed_analysis_of_a_component(kind, small, meshes, problem_of):
+    nodes = meshes.get_val("lattice_nodes")
+    prob = problem_of(kind(n_blades=2, fidelity=small), lattice_nodes=nodes, diameter=-0.2)
     with pytest.raises(om.AnalysisError, match="diameter must be positive; it is -0.2 m"):
         prob.run_model()
 

@@ -18,16 +18,9 @@ from propmdao.geometry.surface import surface_nodes, surface_span
 
 
 @pytest.fixture
-def problem(small):
+def problem(small, problem_of):
     """Problem with a `GeometryComp` of the given options."""
-
-    def problem(**options):
-        prob = om.Problem(reports=False)
-        prob.model.add_subsystem("comp", GeometryComp(fidelity=small, **options), promotes=["*"])
-        prob.setup()
-        return prob
-
-    return problem
+    return lambda **options: problem_of(GeometryComp(fidelity=small, **options))
 
 
 def test_initial_values_give_the_meshes_of_the_propeller(problem, propeller):
