@@ -1,74 +1,63 @@
-"""Throughput of a population of blades: one by one, in one compiled loop, all at once.
+"""Throughput of a population of blades: one after the other, and several in one compiled call.
 
-The candidates of a differential evolution: blade to trimmed loads to tones. All at once is what an
-accelerator asks for: run this once where there is one, JAX takes it by itself. On two cores the
-processes of the driver's `n_workers` are what helps (`test_bench_workers.py`).
+The candidates of a differential evolution, blade to trimmed loads to tones, by the driver's option
+`designs_at_once`. It is what an accelerator asks for: run this once where there is one, JAX takes
+it by itself. On two cores one after the other is faster, for a batch leaves the caches, and the
+processes of `n_workers` are faster still (`test_bench_workers.py`).
 """
 
 from __future__ import annotations
 
-import dataclasses
+import resource
+from pathlib import Path
 
 import jax
-import jax.numpy as jnp
 import numpy as np
 import pytest
 
-from propmdao.acoustics.formulation1a import tones
-from propmdao.acoustics.levels import oaspl_db
-from propmdao.acoustics.observers import arc
-from propmdao.aerodynamics.polars import polars_for
-from propmdao.aerodynamics.section_laws import viscous_sections
-from propmdao.aerodynamics.strips import strip_radii
-from propmdao.aerodynamics.trim import rotation_bounds, solve_trimmed
-from propmdao.fidelity import Fidelity
-from propmdao.geometry.blade import Blade, span_interpolation
-from propmdao.geometry.meshes import blade_meshes, mesh_radii
-from propmdao.geometry.surface import surface_panels
-from propmdao.propeller import load_propeller
+from propmdao.components.design_batches import DesignBatches
 
-PROPELLER = load_propeller("apcsf_11x4.7")
-RADIUS, SPEED, DENSITY, SOUND, THRUST = 0.1397, 8.0, 1.225, 340.294, 1.2
+N_DESIGNS = 64
 
 
-@jax.jit
-def evaluate(beta: jax.Array) -> jax.Array:
-    """Torque [N m] and overall level [dB] of a blade with angles `beta` at the stations [rad]."""
-    fidelity, stations = Fidelity(), PROPELLER.r_over_R
-    blade = dataclasses.replace(Blade.from_propeller(PROPELLER), beta=beta)
-    radii = mesh_radii(stations, fidelity.n_spanwise, fidelity.n_surface_span)
-    lattice, surface = blade_meshes(blade, radii, fidelity.n_chordwise, fidelity.n_contour)
-    middle = span_interpolation(stations, strip_radii(stations[0], fidelity.n_spanwise))
-    sections = viscous_sections(polars_for(PROPELLER), blade, middle, SOUND)
-    bounds = rotation_bounds(RADIUS, SPEED)
-    omega, _, solution = solve_trimmed(
-        lattice, 2, RADIUS, SPEED, DENSITY, THRUST, *bounds, sections
-    )
-    heard = tones(
-        surface_panels(surface), solution.point_loads, 2, omega, SPEED, DENSITY, SOUND,
-        arc(1.905, np.array([-45.0])), fidelity.n_harmonics,
-    )  # fmt: skip
-    return jnp.append(solution.torque, oaspl_db(heard.total))
+@pytest.fixture(scope="module")
+def problem():
+    """The low-noise design of `worker_models`, ready to run."""
+    path = Path(__file__).parent
+    with pytest.MonkeyPatch.context() as patch:
+        patch.syspath_prepend(path)
+        from worker_models import low_noise
+
+        prob = low_noise()
+    prob.final_setup()
+    return prob
 
 
-WAYS = {
-    "one_by_one": lambda population: jnp.stack([evaluate(beta) for beta in population]),
-    "loop": jax.jit(lambda population: jax.lax.map(evaluate, population)),
-    "all_at_once": jax.jit(jax.vmap(evaluate)),
-}
+@pytest.mark.parametrize("at_once", [1, 8, 64])
+def test_population(benchmark, problem, at_once):
+    """Blades with angles up to two degrees from the propeller's, as many as are run at once."""
+    outputs = problem.model.get_nonlinear_vectors()[1]
+    beta, rng = problem.get_val("beta_cp").copy(), np.random.default_rng(1)
 
+    def population() -> tuple[tuple[list], dict]:
+        starts = []
+        for twist in np.radians(rng.uniform(-2.0, 2.0, N_DESIGNS)):
+            problem.set_val("beta_cp", beta + twist)
+            starts.append(outputs.asarray(copy=True))
+        return (starts,), {}
 
-@pytest.mark.parametrize("size", [8, 64])
-@pytest.mark.parametrize("way", WAYS)
-def test_population(benchmark, way, size):
-    """Evaluate blades with angles up to two degrees from the propeller's."""
-    rng = np.random.default_rng(1)
-    twists = np.radians(rng.uniform(-2.0, 2.0, (size, 1)))
-    population = jnp.asarray(Blade.from_propeller(PROPELLER).beta + twists)
+    def run(starts: list) -> None:
+        if at_once > 1:
+            runs = DesignBatches(problem.model, at_once).run(starts)
+            assert not any(run.failure or run.error for run in runs)
+            return
+        for start in starts:
+            outputs.set_val(start)
+            problem.model.run_solve_nonlinear()
 
-    def run() -> None:
-        assert np.isfinite(jax.block_until_ready(WAYS[way](population))).all()
-
+    benchmark.pedantic(run, setup=population, rounds=2, warmup_rounds=1)
     benchmark.extra_info["device"] = jax.devices()[0].device_kind
-    benchmark.pedantic(run, rounds=3, warmup_rounds=1)
-    benchmark.extra_info["blades_per_second"] = size / benchmark.stats.stats.min
+    benchmark.extra_info["blades_per_second"] = N_DESIGNS / benchmark.stats.stats.min
+    benchmark.extra_info["peak_memory_gib"] = (
+        resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 2**20
+    )

@@ -12,7 +12,7 @@ from propmdao.aerodynamics.known_root import steady_at
 from propmdao.aerodynamics.solution import SteadySolution, failure
 from propmdao.aerodynamics.steady import solve_steady
 from propmdao.analysis_result import RAD_PER_S
-from propmdao.components.jax_component import Arrays, evaluate
+from propmdao.components.jax_component import Arrays
 from propmdao.components.operating_points import OperatingPointsComp
 from propmdao.components.root_component import RootComponent
 from propmdao.components.rotor_inputs import (
@@ -112,7 +112,8 @@ class AerodynamicsComp(OperatingPointsComp, RootComponent):
             self.add_point_output(name)
         if self.options["loads"]:
             self._add_loads(nc, ns, n_loads(fidelity))
-        self.function, self.state, self.residual = _at_root, "induced_velocity", "residual"
+        self.search, self.function = _steady, _at_root
+        self.state, self.residual = "induced_velocity", "residual"
         self.static = self.options["n_blades"]
 
     def _add_rotation_speed(self) -> None:
@@ -129,9 +130,6 @@ class AerodynamicsComp(OperatingPointsComp, RootComponent):
 
     def at_rest(self, inputs: Arrays) -> bool:
         return not inputs["rpm"].any()
-
-    def solve(self, inputs: Arrays) -> Any:
-        return evaluate(_steady, self.static, self.constants, inputs)
 
     def check(self, inputs: Any, values: Any) -> None:
         require_diameter(inputs)

@@ -9,6 +9,7 @@ import openmdao.api as om
 from openmdao.core.driver import Driver
 
 from propmdao.components.candidate import Array, Candidate, constraint_violations
+from propmdao.components.model_run import said
 
 
 class DesignRuns:
@@ -117,8 +118,7 @@ class DesignRuns:
     def failed(self, design: Array, error: om.AnalysisError) -> Candidate:
         """Candidate of a run that has failed."""
         n_constraints = sum(meta["size"] for meta in self._driver._cons.values())
-        reason = str(error) or "AnalysisError without a message"
-        return Candidate.failed(design, 1 + n_constraints, reason)
+        return Candidate.failed(design, 1 + n_constraints, said(error))
 
     def description(self) -> dict[str, Any]:
         """Variables, responses and the initial design as JSON values: what the problem is."""

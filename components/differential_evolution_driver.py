@@ -19,12 +19,12 @@ from propmdao.components.candidate import Array, Candidate
 from propmdao.components.checkpoint import Checkpoint
 from propmdao.components.constrained_search import ConstrainedSearch, Generation, SearchStopped
 from propmdao.components.design_runs import DesignRuns
-from propmdao.components.model_pool import ModelRun, model_pool, put_outputs
+from propmdao.components.model_run import ModelRun, put_outputs
+from propmdao.components.model_runner import declare_runner_options, model_runner
 from propmdao.components.search_options import (
     SAMPLERS,
     declare_file_options,
     declare_search_options,
-    declare_worker_options,
 )
 from propmdao.worker_processes import WorkerLostError
 
@@ -57,6 +57,10 @@ class DifferentialEvolutionDriver(Driver):
       The search, its files and its recorded cases are the same, whatever the number of workers,
       if the model computes the same numbers on one thread as on several. Each worker has one; an
       executor of your own needs `propmdao.worker_processes.use_one_thread` as its initializer.
+    - With ``designs_at_once`` the components of this package evaluate so many designs in one
+      compiled call, which is what an accelerator is for; memory grows with the number. Other
+      components, ``ExecComp`` say, run at one design after the other. The numbers are those of
+      single runs to rounding, so that a long search may take another path.
     - Cases from a checkpoint are recorded again; outputs that it does not hold are nan, which are
       all but independent variables, objective and constraints.
 
@@ -112,7 +116,7 @@ class DifferentialEvolutionDriver(Driver):
 
     def _declare_options(self) -> None:
         declare_search_options(self.options)
-        declare_worker_options(self.options)
+        declare_runner_options(self.options)
         declare_file_options(self.options)
 
     def _get_name(self) -> str:
@@ -162,8 +166,7 @@ class DifferentialEvolutionDriver(Driver):
             seed = self._checkpoint.seed
         budget = self.options["time_budget"]
         self._deadline = math.inf if budget is None else time.monotonic() + budget
-        workers = [self.options[name] for name in ("n_workers", "executor", "problem_factory")]
-        with model_pool(self._problem().model, *workers) as self._pool:
+        with model_runner(self._problem().model, self.options) as self._runner:
             return self._run_search(np.random.default_rng(seed))
 
     def _run_search(self, rng: np.random.Generator) -> bool:
@@ -261,11 +264,11 @@ class DifferentialEvolutionDriver(Driver):
                 yield candidate
 
     def _model_runs(self, designs: list[Array]) -> Generator[ModelRun | None, None, None]:
-        """Runs of the workers at designs, or as many None: to be run here."""
-        if self._pool is None:
+        """Runs at designs, or as many None: to be run here, one after the other."""
+        if self._runner is None:
             yield from [None] * len(designs)
         else:
-            for run in self._pool.run(map(self._runs.start_at, designs)):
+            for run in self._runner.run(map(self._runs.start_at, designs)):
                 if run.error is not None:
                     raise run.error
                 self.result.model_evals += not run.failure  # as OpenMDAO counts runs here

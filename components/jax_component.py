@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Callable, Hashable, Mapping
+from collections.abc import Callable, Hashable, Mapping, Sequence
 from functools import partial
+from operator import itemgetter
 from typing import Any, Generic, Protocol, TypeVar
 
 import jax
@@ -57,6 +58,47 @@ class JaxComponent(om.ExplicitComponent):
             for name in d_inputs:
                 d_inputs[name] += products[name]
 
+    def at_designs(
+        self, designs: Sequence[Arrays], at_once: int
+    ) -> list[Arrays | om.AnalysisError]:
+        """Outputs at several designs, from one call of the compiled function.
+
+        Parameters
+        ----------
+        designs : sequence of dicts of arrays
+            Inputs by name, of each design.
+        at_once : int
+            Number of designs that the code is compiled for; there are no more than these.
+
+        Returns
+        -------
+        list of dicts of arrays, or of om.AnalysisError
+            Outputs by name of each design, or why it has none.
+        """
+        return self._at_points(designs, at_once)
+
+    def _at_points(self, points: Sequence[Arrays], at_once: int) -> list[Arrays | om.AnalysisError]:
+        if not points:
+            return []
+        filled = [*points, *[points[-1]] * (at_once - len(points))]
+        inputs = {name: np.stack([point[name] for point in filled]) for name in points[0]}
+        values = jax.device_get(evaluate_all(self.evaluated(), self.static, self.constants, inputs))
+        return [
+            self._checked(point, jax.tree.map(itemgetter(place), values))
+            for place, point in enumerate(points)
+        ]
+
+    def _checked(self, inputs: Arrays, values: Arrays) -> Arrays | om.AnalysisError:
+        try:
+            self.check(inputs, values)
+        except om.AnalysisError as error:
+            return error
+        return {name: values[name] for name in self.output_shapes()}
+
+    def evaluated(self) -> Function:
+        """Return what is evaluated for the outputs: `function`, or a search that precedes it."""
+        return self.function
+
     def n_points(self) -> int:
         """Points at which the component works at a time.
 
@@ -96,7 +138,7 @@ class JaxComponent(om.ExplicitComponent):
         om.AnalysisError
             As `check` does.
         """
-        values = evaluate(self.function, self.static, self.constants, inputs)
+        values = evaluate(self.evaluated(), self.static, self.constants, inputs)
         self.check(inputs, values)
         return values
 
@@ -247,6 +289,12 @@ def _same(a: Arrays, b: Arrays) -> bool:
 def evaluate(function: Function, static: Hashable, constants: Any, inputs: Arrays) -> Arrays:
     """Return ``function(inputs, constants, static)``, compiled."""
     return function(inputs, constants, static)
+
+
+@partial(jax.jit, static_argnums=(0, 1))
+def evaluate_all(function: Function, static: Hashable, constants: Any, inputs: Arrays) -> Arrays:
+    """Return the function's values where every input has a leading axis of points, compiled."""
+    return jax.vmap(lambda at: function(at, constants, static))(inputs)
 
 
 def _chosen(

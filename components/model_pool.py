@@ -3,9 +3,7 @@
 from __future__ import annotations
 
 import contextlib
-import dataclasses
 import pickle
-import tempfile
 import threading
 import traceback
 from collections.abc import Callable, Iterable, Iterator
@@ -18,32 +16,11 @@ from openmdao.core.constants import _SetupStatus
 from openmdao.core.driver import Driver
 
 from propmdao.components.candidate import Array
-from propmdao.worker_processes import results_in_order, start_workers
+from propmdao.components.model_run import ModelRun, run_system
+from propmdao.worker_processes import results_in_order
 
 # An executor may run tasks on threads; a Problem serves one at a time.
 _WORKER = threading.local()
-
-
-@dataclasses.dataclass(frozen=True)
-class ModelRun:
-    """What a run of a model has left.
-
-    Attributes
-    ----------
-    outputs : (n,) array
-        All outputs of the model, as its outputs vector holds them.
-    failure : str
-        Message of the `om.AnalysisError` that ended the run, empty when there was none.
-    error : Exception or None
-        What else was raised.
-    built : bool
-        False when it was raised by building the model.
-    """
-
-    outputs: Array
-    failure: str = ""
-    error: Exception | None = None
-    built: bool = True
 
 
 class ModelPool:
@@ -114,73 +91,6 @@ class ModelPool:
             yield run
 
 
-@contextlib.contextmanager
-def model_pool(
-    model: om.Group,
-    n_workers: int,
-    executor: Executor | None,
-    problem_factory: Callable[[], om.Problem] | None,
-) -> Iterator[ModelPool | None]:
-    """Models on workers, as the options of a driver ask for them.
-
-    Parameters
-    ----------
-    model : om.Group
-        Model of the driver's Problem.
-    n_workers : int
-        Processes that are started, and ended when the context is left; with 1 there are none.
-    executor : concurrent.futures.Executor or None
-        Used instead of processes of one's own, and left open.
-    problem_factory : callable or None
-        Builds the Problem of each worker.
-
-    Yields
-    ------
-    ModelPool or None
-        None when the model is to be run where it is.
-
-    Raises
-    ------
-    ValueError
-        When there is no factory, or it does not pickle, or both kinds of workers are asked for.
-    """
-    if n_workers == 1 and executor is None:
-        yield None
-        return
-    if n_workers > 1 and executor is not None:
-        raise ValueError(f"give n_workers or an executor, not both; n_workers is {n_workers}")
-    if problem_factory is None:
-        raise ValueError(
-            "workers build their own Problem: give problem_factory, a function of a module that"
-            " returns the Problem, set up"
-        )
-    if executor is not None:
-        yield ModelPool(problem_factory, model, executor)
-        return
-    with contextlib.ExitStack() as stack:
-        # A Problem that is set up clears the reports of its name: they would be this process's.
-        folder = stack.enter_context(tempfile.TemporaryDirectory())
-        workers = stack.enter_context(start_workers(n_workers, {"OPENMDAO_WORKDIR": folder}))
-        pool = ModelPool(problem_factory, model, workers)
-        pool.build_ahead(n_workers)
-        yield pool
-
-
-def put_outputs(model: om.Group, values: Array) -> None:
-    """Make a model what it would be after a run that has left these outputs.
-
-    Parameters
-    ----------
-    model : om.Group
-        The whole model of a Problem.
-    values : (n,) array
-        All outputs, as its outputs vector holds them.
-    """
-    model.get_nonlinear_vectors()[1].set_val(values)
-    for group in model.system_iter(include_self=True, typ=om.Group):
-        group._transfer("nonlinear", "fwd")
-
-
 def _layout(model: om.Group) -> dict[str, int]:
     """Sizes of all outputs in the order of the outputs vector."""
     return {name: meta["size"] for name, meta in model._var_allprocs_abs2meta["output"].items()}
@@ -191,14 +101,10 @@ def _run_model(task: bytes, start: Array) -> ModelRun:
     built = False
     try:
         model = _problem(task).model
-        built, failure = True, ""
+        built = True
         outputs = model.get_nonlinear_vectors()[1]
         outputs.set_val(start)
-        try:
-            model.run_solve_nonlinear()
-        except om.AnalysisError as error:
-            failure = str(error) or "AnalysisError without a message"
-        return ModelRun(outputs.asarray(copy=True), failure)
+        return run_system(model, outputs)
     except Exception as error:
         return ModelRun(start, error=_that_travels(error), built=built)
 

@@ -11,6 +11,7 @@ import numpy as np
 from propmdao.components.jax_component import (
     Arrays,
     Derivatives,
+    Function,
     FunctionDerivatives,
     JaxComponent,
     LastPoints,
@@ -27,42 +28,27 @@ class RootComponent(JaxComponent):
       (1,), among its outputs; both names are no variables of the component;
     - ``state``, ``residual``: these two names;
     - ``of_state``: outputs (1,) that are the state in other units, with what it is multiplied by;
-    - ``solve``: finds the state.
+    - ``search``: a function like ``function`` that finds the state: it takes the inputs alone, and
+      returns the outputs, the state and whatever ``check`` needs.
 
     Derivatives are those of the implicit function: with the function linearised once at the root,
     whose gradient of the residual serves all products, no search is repeated or differentiated.
     """
 
+    search: Function
     state: str
     residual: str
     of_state: Mapping[str, float] = {}
 
     def __init__(self, **options: Any) -> None:
         super().__init__(**options)
-        self._found = LastPoints(self._solve, self.n_points)
+        self._found = LastPoints(super().values_at, self.n_points)
 
-    def solve(self, inputs: Arrays) -> Mapping[str, Any]:
-        """Find the state.
-
-        Parameters
-        ----------
-        inputs : dict of arrays
-            Inputs by name.
-
-        Returns
-        -------
-        mapping
-            Outputs by name, the state (1,), and whatever `check` needs.
-
-        Raises
-        ------
-        om.AnalysisError
-            Where there is none.
-        """
-        raise NotImplementedError
+    def evaluated(self) -> Function:
+        return self.search
 
     def values_at(self, inputs: Arrays) -> Mapping[str, Any]:
-        return self._found(inputs)
+        return self._found(inputs)  # which derivatives ask for again
 
     def derivatives_at(self, inputs: Arrays) -> Derivatives:
         at = {**inputs, self.state: self._found(inputs)[self.state]}
@@ -70,11 +56,6 @@ class RootComponent(JaxComponent):
         function = self.function, self.static, self.constants
         of_function = FunctionDerivatives(*function, at, (*shapes, self.residual))
         return _AtRoot(of_function, shapes, self.state, self.residual, self.of_state)
-
-    def _solve(self, inputs: Arrays) -> Mapping[str, Any]:
-        values = self.solve(inputs)
-        self.check(inputs, values)
-        return values
 
 
 class _AtRoot:

@@ -1,10 +1,8 @@
-"""Options of drivers: how to search, where the model runs, what is written."""
+"""Options of a search: how, when it ends, what is written."""
 
 from __future__ import annotations
 
 import os
-from collections.abc import Callable
-from concurrent.futures import Executor
 
 from openmdao.utils.options_dictionary import OptionsDictionary
 from scipy.stats import qmc
@@ -75,27 +73,3 @@ def declare_file_options(options: OptionsDictionary) -> None:
     )
     declare("progress", True, types=bool, desc="Progress bar on stderr, if it is a terminal.")
     declare("disp", True, types=bool, desc="Print a summary at the end.")
-
-
-def declare_worker_options(options: OptionsDictionary) -> None:
-    """Declare where the model runs."""
-    declare = options.declare
-    declare(
-        "n_workers", 1, types=int, lower=1, desc="Processes that run the model; 1: only this one."
-    )
-    declare(
-        "executor",
-        None,
-        types=Executor,
-        allow_none=True,
-        recordable=False,
-        desc="Executor of concurrent.futures that runs the model instead; it stays open.",
-    )
-    declare(
-        "problem_factory",
-        None,
-        types=Callable,
-        allow_none=True,
-        recordable=False,
-        desc="Function that returns the Problem, set up; the workers build theirs with it.",
-    )

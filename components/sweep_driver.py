@@ -14,8 +14,8 @@ from tqdm import tqdm
 
 from propmdao.components.candidate import Array
 from propmdao.components.checkpoint import SAME_MODEL
-from propmdao.components.model_pool import ModelPool, model_pool, put_outputs
-from propmdao.components.search_options import declare_worker_options
+from propmdao.components.model_run import put_outputs, said
+from propmdao.components.model_runner import ModelRunner, declare_runner_options, model_runner
 from propmdao.result_table import ResultTable, Value, table_files
 
 Sample = dict[str, dict[str, Any]]
@@ -33,7 +33,7 @@ class SweepDriver(om.AnalysisDriver):
     - Samples that the table has are not run again, so a sweep that was interrupted or killed goes
       on, and one with more samples adds these. One of them is, to see that the model is the same.
     - Every run starts from the output values that the model held when the driver started, so that
-      no row depends on the one before it; and the samples may run on workers.
+      no row depends on the one before it; and the samples may run on workers, or several at once.
 
     A sample whose analysis raises an error, or has a response that is nan, has failed.
 
@@ -58,7 +58,7 @@ class SweepDriver(om.AnalysisDriver):
 
     def _declare_options(self) -> None:
         super()._declare_options()
-        declare_worker_options(self.options)
+        declare_runner_options(self.options)
         self.options.declare(
             "table",
             "sweep.csv",
@@ -89,10 +89,11 @@ class SweepDriver(om.AnalysisDriver):
         self._initial = self._outputs().asarray(copy=True)
         self._require_same_model(table, samples, points)
         missing = table.missing(points)
-        workers = [self.options[name] for name in ("n_workers", "executor", "problem_factory")]
         with (
-            model_pool(self._problem().model, *workers) as pool,
-            contextlib.closing(self._runs([samples[place] for place in missing], pool)) as reasons,
+            model_runner(self._problem().model, self.options) as runner,
+            contextlib.closing(
+                self._runs([samples[place] for place in missing], runner)
+            ) as reasons,
         ):
             silent = None if self.options["progress"] else True
             for place in tqdm(missing, desc=self._name, unit="sample", disable=silent):
@@ -164,7 +165,9 @@ class SweepDriver(om.AnalysisDriver):
             raise ValueError(f"{self.msginfo} needs a response; add_responses names them")
         return _columns(values)
 
-    def _runs(self, samples: list[Sample], pool: ModelPool | None) -> Generator[str, None, None]:
+    def _runs(
+        self, samples: list[Sample], runner: ModelRunner | None
+    ) -> Generator[str, None, None]:
         """Run samples and yield why they failed; the model is left as each of them leaves it."""
         model, outputs = self._problem().model, self._outputs()
 
@@ -175,8 +178,8 @@ class SweepDriver(om.AnalysisDriver):
             values: Array = outputs.asarray(copy=True)
             return values
 
-        if pool is not None:
-            for run in pool.run(map(start, samples)):
+        if runner is not None:
+            for run in runner.run(map(start, samples)):
                 put_outputs(model, run.outputs)
                 self.result.model_evals += run.error is None and not run.failure
                 yield run.failure or (_said(run.error) if run.error else "")
@@ -187,7 +190,7 @@ class SweepDriver(om.AnalysisDriver):
             try:
                 self._run_solve_nonlinear()
             except om.AnalysisError as error:
-                reason = str(error) or "AnalysisError without a message"
+                reason = said(error)
             except Exception as error:  # as om.AnalysisDriver: a survey does not end at a sample
                 reason = _said(error)
             yield reason

@@ -10,7 +10,7 @@ from propmdao.aerodynamics.known_root import trimmed_at
 from propmdao.aerodynamics.trim import TrimError, require_reached, solve_trimmed
 from propmdao.analysis_result import RAD_PER_S
 from propmdao.components.aerodynamics_comp import AerodynamicsComp, loads
-from propmdao.components.jax_component import Arrays, evaluate
+from propmdao.components.jax_component import Arrays
 from propmdao.components.rotor_inputs import require_diameter, rotor_at
 from propmdao.components.rpm_bounds import bounds_at, declare_bounds, given_bounds
 
@@ -58,8 +58,9 @@ load_force, section_speed, section_lift_coefficient
 
     def setup(self) -> None:
         super().setup()
-        self._bounds = given_bounds(self.options)
-        self.function, self.state, self.residual = _at_root, "rotation_speed", "missing_thrust"
+        self.constants = self.constants, given_bounds(self.options)
+        self.search, self.function = _trimmed, _at_root
+        self.state, self.residual = "rotation_speed", "missing_thrust"
         self.of_state = {"rpm": 1.0 / RAD_PER_S}
 
     def _add_rotation_speed(self) -> None:
@@ -69,13 +70,10 @@ load_force, section_speed, section_lift_coefficient
     def at_rest(self, inputs: Arrays) -> bool:
         return not inputs["thrust_required"].any()
 
-    def solve(self, inputs: Arrays) -> Any:
-        return evaluate(_trimmed, self.static, (self.constants, self._bounds), inputs)
-
     def check(self, inputs: Any, values: Any) -> None:
         require_diameter(inputs)
         found = values["rotation_speed"][0], values["missing_at_bounds"]
-        asked = _asked(inputs, (self.constants, self._bounds))
+        asked = _asked(inputs, self.constants)
         try:
             require_reached(*found, **asked, n_blades=self.options["n_blades"])
         except TrimError as error:
@@ -98,7 +96,7 @@ def _asked(inputs: Arrays, constants: Any) -> dict[str, Any]:
 
 def _at_root(inputs: Arrays, constants: Any, static: int) -> Arrays:
     omega = inputs["rotation_speed"][0]
-    rotor = rotor_at(inputs, constants)
+    rotor = rotor_at(inputs, constants[0])
     solution, missing = trimmed_at(
         omega, **rotor, n_blades=static, thrust_required=inputs["thrust_required"][0]
     )

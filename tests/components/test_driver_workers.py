@@ -13,6 +13,7 @@ import openmdao.api as om
 import pytest
 
 from propmdao.components import DifferentialEvolutionDriver
+from propmdao.components.model_run import put_outputs
 from propmdao.worker_processes import WorkerLostError
 
 
@@ -124,12 +125,33 @@ def set_up_nothing():
 def test_workers_without_a_factory_or_of_two_kinds_are_refused(models, threads):
     with pytest.raises(ValueError, match="give problem_factory"):
         models.problem(n_workers=2, problem_factory=None).run_driver()
-    with pytest.raises(ValueError, match="n_workers or an executor, not both; n_workers is 2"):
+    with pytest.raises(ValueError, match="in one way; given are n_workers 2 and an executor"):
         models.problem(n_workers=2, executor=threads).run_driver()
 
 
+def test_what_a_run_elsewhere_has_left_reaches_every_input():
+    """Units and scaled outputs included, as in a run here."""
+    prob = om.Problem(reports=False)
+    scaled = om.ExecComp("h = 3 * x", h={"ref": 10.0, "units": "m"})
+    prob.model.add_subsystem("scaled", scaled)
+    prob.model.add_subsystem("feet", om.ExecComp("k = h", h={"units": "ft"}))
+    prob.model.connect("scaled.h", "feet.h")
+    prob.setup()
+    prob.run_model()
+    left = prob.model.get_nonlinear_vectors()[1].asarray(copy=True)
+    there = prob.model.feet._inputs["h"].copy()
+    prob.model.feet._inputs["h"] = 0.0
+    put_outputs(prob.model, left)
+    assert prob.model.feet._inputs["h"] == there
+
+
 def test_options_of_a_wrong_type_are_refused():
-    for wrong in ({"n_workers": 0}, {"executor": 2}, {"problem_factory": "build"}):
+    for wrong in (
+        {"n_workers": 0},
+        {"executor": 2},
+        {"problem_factory": "build"},
+        {"designs_at_once": 0},
+    ):
         with pytest.raises((TypeError, ValueError), match=next(iter(wrong))):
             DifferentialEvolutionDriver(**wrong)
 
