@@ -10,7 +10,7 @@ import openmdao.api as om
 
 from propmdao.aerodynamics.polars import SectionPolars, blade_tables
 from propmdao.aerodynamics.strips import strip_radii
-from propmdao.components.jax_component import Arrays, JaxComponent
+from propmdao.components.jax_component import Arrays, JaxComponent, evaluate
 from propmdao.components.operating_points import STATIC
 from propmdao.components.rotor_inputs import require_diameter
 from propmdao.fidelity import Fidelity
@@ -104,31 +104,18 @@ class GeometryComp(JaxComponent):
 
     def setup(self) -> None:
         propeller, fidelity = self.options["propeller"], self.options["fidelity"]
-        self.add_input("diameter", val=propeller.diameter, units="m", tags=STATIC)
-        for name, value in blade_distributions(propeller, self.options["camber"]).items():
-            self.add_input(name, val=value, units="rad" if name == "beta" else None, tags=STATIC)
-        self.add_output(
-            "lattice_nodes",
-            shape=(fidelity.n_chordwise + 1, fidelity.n_spanwise + 1, 3),
-            units="m",
-            desc="Corner points of the vortex lattice of blade 1.",
-        )
-        self.add_output(
-            "surface_nodes",
-            shape=(fidelity.n_contour, fidelity.n_surface_span, 3),
-            units="m",
-            desc="Points of the section contours of blade 1.",
-        )
-        stations = propeller.r_over_R
-        polars, sections = self.options["polars"], None
+        stations, polars = propeller.r_over_R, self.options["polars"]
+        initial = {
+            "diameter": np.array([propeller.diameter]),
+            **blade_distributions(propeller, self.options["camber"]),
+        }
+        units = {"diameter": "m", "beta": "rad"}
+        for name, value in initial.items():
+            self.add_input(name, val=value, units=units.get(name), tags=STATIC)
+        sections = None
         if polars is not None:
             radii = strip_radii(float(stations[0]), fidelity.n_spanwise)
             sections = span_interpolation(stations, radii)
-            self.add_output(
-                "section_polars",
-                shape=(fidelity.n_spanwise, *polars.values.shape[3:]),
-                desc="Polars of the sections in the middle of the strips.",
-            )
         self.function = _geometry
         self.static = fidelity
         self.constants = (
@@ -137,6 +124,15 @@ class GeometryComp(JaxComponent):
             polars,
             sections,
         )
+        # A solver around the propeller, Newton's say, starts from these without running this first.
+        outputs = evaluate(self.function, self.static, self.constants, initial)
+        for name, units_of, desc in (
+            ("lattice_nodes", "m", "Corner points of the vortex lattice of blade 1."),
+            ("surface_nodes", "m", "Points of the section contours of blade 1."),
+            ("section_polars", None, "Polars of the sections in the middle of the strips."),
+        ):
+            if name in outputs:
+                self.add_output(name, val=np.asarray(outputs[name]), units=units_of, desc=desc)
 
     def check(self, inputs: Any, values: Any) -> None:
         require_diameter(inputs)
