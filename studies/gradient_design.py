@@ -107,12 +107,12 @@ def column(propeller: Propeller, of: Analysis) -> dict[str, Cell]:
 def contributions(prob: om.Problem, start: Design, best: Design) -> Rows:
     """What each kind of variable brings when one after the other takes its optimum's values."""
     for name, value in start.items():
-        prob.set_val(f"{name}_cp", value)
+        prob.set_val(f"{name}_cp", value, units=free_form.units(name))
     steps = {}
     with tempfile.TemporaryDirectory() as folder:
         for name, label in STEPS.items():
             if name:
-                prob.set_val(f"{name}_cp", best[name])
+                prob.set_val(f"{name}_cp", best[name], units=free_form.units(name))
             prob.run_model()
             blade = free_form.write_blade(prob, "step", Path(folder))
             steps[label] = column(blade, evaluate(blade))
@@ -148,7 +148,19 @@ class Results(NamedTuple):
 
 def control_points(prob: om.Problem) -> Design:
     """Control points of a free-form blade by distribution."""
-    return {name: prob.get_val(f"{name}_cp").copy() for name in free_form.BOUNDS}
+    return {
+        name: prob.get_val(f"{name}_cp", units=free_form.units(name)).copy()
+        for name in free_form.BOUNDS
+    }
+
+
+def start_from(prob: om.Problem, design: Design) -> None:
+    """Start a search where another has ended."""
+    for name, (lower, upper) in free_form.BOUNDS.items():
+        # Units that are changed and changed back leave a point on its bound a digit beyond it.
+        rounding = 1e-12 * (upper - lower)
+        inside = np.clip(design[name], lower + rounding, upper - rounding)
+        prob.set_val(f"{name}_cp", inside, units=free_form.units(name))
 
 
 def design(output: Path, evolution: int = 0) -> Results:
@@ -177,8 +189,7 @@ def design(output: Path, evolution: int = 0) -> Results:
         start = control_points(coarse)
         searches[f"{name}, coarse"] = run_slsqp(coarse, output / f"{objective}_coarse.sql")
         prob = free_form.build_problem(objective, *limits)
-        for point, value in control_points(coarse).items():
-            prob.set_val(f"{point}_cp", value)
+        start_from(prob, control_points(coarse))
         searches[name] = run_slsqp(prob, output / f"{objective}.sql")
         blades[name] = free_form.write_blade(prob, f"quiet_{objective}", output)
         brought[name] = contributions(prob, start, control_points(prob))

@@ -90,10 +90,21 @@ def test_the_written_blade_is_that_of_the_problem(
     assert_allclose(shown["thrust"], study.thesis.THRUST, rtol=1e-7)
 
 
+def test_a_search_that_goes_on_starts_within_its_bounds(study: ModuleType) -> None:
+    prob = study.free_form.build_problem("tones", 0.036, 60.0)
+    bounds = study.free_form.BOUNDS
+    for side in (0, 1):
+        study.start_from(prob, {name: of[side] for name, of in bounds.items()})
+        for name, value in study.control_points(prob).items():
+            lower, upper = bounds[name]
+            assert (lower <= value).all() and (value <= upper).all(), name
+            assert_allclose(value, bounds[name][side], atol=1e-9)
+
+
 def test_contributions_lead_from_the_start_to_the_optimum(
     study: ModuleType, problem: om.Problem
 ) -> None:
-    best = {name: problem.get_val(f"{name}_cp").copy() for name in study.free_form.BOUNDS}
+    best = study.control_points(problem)
     rpm, torque, tones, total = (
         problem.get_val(of)[0]
         for of in ("rpm", "torque", "tones.soft_maximum_db", "total.soft_maximum_db")
