@@ -1,8 +1,10 @@
 """Write the tables of docs/verification.md anew from the program as it is.
 
-Run it from the repository: ``python docs/update_tables.py``, or with the names of some tables. Each
-table stands between two comment lines that name it; the text around them is written by hand. All of
-them take about a quarter of an hour; the sensitivities need NeuralFoil (the extra ``polars``).
+Run it from the repository: ``python docs/update_tables.py``, or with the names of some tables, or
+with what several begin with: ``gradient``. Each table stands between two comment lines that name
+it; the text around them is written by hand. All of them take more than half an hour, most of it for
+searches and smoothness (`gradient_tables.py`); the sensitivities need NeuralFoil (the extra
+``polars``).
 """
 
 from __future__ import annotations
@@ -23,6 +25,7 @@ from propmdao.aerodynamics.steady import WAKE_AGES, solve_steady
 from propmdao.aerodynamics.strips import strip_radii
 from propmdao.aerodynamics.wake import wake_azimuths
 from propmdao.analysis import SOUND_SPEED, analyze
+from propmdao.comparison import Rows
 from propmdao.geometry.blade import Blade, span_interpolation
 from propmdao.geometry.lattice import lattice_nodes, lattice_span
 from propmdao.propeller import Propeller, load_propeller
@@ -32,6 +35,7 @@ HERE = Path(__file__).parent
 sys.path.insert(0, str(HERE.parent / "studies"))
 import aerodynamic_sensitivity  # noqa: E402
 import aerodynamic_validation  # noqa: E402
+import gradient_tables  # noqa: E402
 import hover_noise as hover_noise_study  # noqa: E402
 import wake_transport as wake_study  # noqa: E402
 
@@ -39,8 +43,6 @@ SLOW_FLYER = load_propeller("apcsf_11x4.7")
 RADIUS, DENSITY = 0.1397, 1.225
 RAD_PER_S = np.pi / 30.0
 DEG = np.pi / 180.0
-
-Rows = list[tuple[str, ...]]
 
 
 def solve(speed: float, n_chordwise: int = 8, n_spanwise: int = 24, ages: np.ndarray = WAKE_AGES):
@@ -247,6 +249,7 @@ TABLES: dict[str, Callable[[], Rows]] = {
     "twist needed": twist_needed,
     "hover noise": hover_noise,
     "design point": design_point,
+    **gradient_tables.TABLES,
 }
 
 
@@ -260,11 +263,17 @@ def markdown(rows: Rows) -> str:
 def main() -> None:
     """Replace the tables of docs/verification.md."""
     parser = argparse.ArgumentParser(description=__doc__.split("\n\n")[0])
-    parser.add_argument("tables", nargs="*", help=f"some of: {', '.join(TABLES)}; default all")
-    names = parser.parse_args().tables or list(TABLES)
-    unknown = [name for name in names if name not in TABLES]
-    if unknown:
-        parser.error(f"no table {unknown[0]!r}; there are: {', '.join(TABLES)}")
+    parser.add_argument(
+        "tables",
+        nargs="*",
+        help=f"some of: {', '.join(TABLES)}; or what several begin with; default all",
+    )
+    names = []
+    for asked in parser.parse_args().tables or [""]:
+        chosen = [asked] if asked in TABLES else [name for name in TABLES if name.startswith(asked)]
+        if not chosen:
+            parser.error(f"no table {asked!r}; there are: {', '.join(TABLES)}")
+        names += chosen
     page = HERE / "verification.md"
     for name in names:
         begin, end = f"<!-- table: {name} -->", "<!-- end of table -->"
