@@ -12,6 +12,8 @@ import jax
 import numpy as np
 import openmdao.api as om
 
+from propmdao._compile import compiled
+
 Arrays = dict[str, Any]  # of NumPy or JAX, by variable name
 Function = Callable[[Arrays, Any, Any], Arrays]
 Shapes = dict[str, tuple[int, ...]]
@@ -285,13 +287,13 @@ def _same(a: Arrays, b: Arrays) -> bool:
     return all(np.array_equal(a[name], b[name]) for name in sorted(a, key=lambda n: a[n].size))
 
 
-@partial(jax.jit, static_argnums=(0, 1))
+@partial(compiled, static_argnums=(0, 1))
 def evaluate(function: Function, static: Hashable, constants: Any, inputs: Arrays) -> Arrays:
     """Return ``function(inputs, constants, static)``, compiled."""
     return function(inputs, constants, static)
 
 
-@partial(jax.jit, static_argnums=(0, 1))
+@partial(compiled, static_argnums=(0, 1))
 def evaluate_all(function: Function, static: Hashable, constants: Any, inputs: Arrays) -> Arrays:
     """Return the function's values where every input has a leading axis of points, compiled."""
     return jax.vmap(lambda at: function(at, constants, static))(inputs)
@@ -307,7 +309,7 @@ def _chosen(
     return chosen
 
 
-@partial(jax.jit, static_argnums=(0, 1, 2))
+@partial(compiled, static_argnums=(0, 1, 2))
 def _push(
     function: Function,
     static: Hashable,
@@ -319,7 +321,7 @@ def _push(
     return jax.jvp(_chosen(function, static, outputs, constants), (inputs,), (seeds,))[1]
 
 
-@partial(jax.jit, static_argnums=(0, 1, 2))
+@partial(compiled, static_argnums=(0, 1, 2))
 def _linearise(
     function: Function,
     static: Hashable,
@@ -330,7 +332,7 @@ def _linearise(
     return jax.vjp(_chosen(function, static, outputs, constants), inputs)[1]
 
 
-@jax.jit
+@compiled
 def _pull_back(pull: Any, seeds: Arrays) -> Arrays:
     products: Arrays = pull(seeds)[0]
     return products

@@ -11,6 +11,7 @@ import numpy as np
 import numpy.typing as npt
 from jax import Array
 
+from propmdao._compile import compiled
 from propmdao.acoustics.broadband.boundary_layer import Trip
 from propmdao.acoustics.formulation1a import require_subsonic_tip, tones
 from propmdao.acoustics.observers import point, require_outside_rotor
@@ -164,7 +165,7 @@ def analyze(
     return Analysis(float(rpm), *air, viscous, steady, of, points, heard, noise, trip, surroundings)
 
 
-@partial(jax.jit, static_argnames=("n_chordwise", "n_contour"))
+@partial(compiled, static_argnames=("n_chordwise", "n_contour"))
 def _meshes(
     blade: Blade, radii: MeshRadii, n_chordwise: int, n_contour: int
 ) -> tuple[Array, Panels]:

@@ -58,7 +58,10 @@ def analysis_figures(
     heard = acoustic_plots.Heard(analysis.tones, BANDS_HZ, total)
     if noise is not None:
         figures["spectrum"] = acoustic_plots.spectrum({title: heard})
-        parts = {"total": acoustic_plots.band_levels(heard), "broadband": level_db(total[0])}
+        parts = {
+            "total": acoustic_plots.band_levels(heard),
+            "broadband": np.asarray(level_db(total[0])),
+        }
         for mechanism in MECHANISMS:
             power = getattr(noise, mechanism)[0]
             parts[mechanism.replace("_", " ")] = np.asarray(level_db(power))

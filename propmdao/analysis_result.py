@@ -10,6 +10,7 @@ import numpy as np
 import numpy.typing as npt
 from jax import Array
 
+from propmdao._compile import compiled
 from propmdao.acoustics.bands import tones_in_bands
 from propmdao.acoustics.broadband import SelfNoise, third_octave_centers
 from propmdao.acoustics.broadband.boundary_layer import Trip
@@ -163,7 +164,7 @@ def _total(tones: Tones, i: int, noise: npt.NDArray[np.float64]) -> dict[str, fl
     }
 
 
-@jax.jit
+@compiled
 def _levels(tones: Tones) -> dict[str, Array]:
     """Levels of the tones by their key: of all observers, and harmonics where it begins by spl."""
     parts = {"": tones.total, "thickness_": tones.thickness, "loading_": tones.loading}

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import jax
 import jax.numpy as jnp
 from jax import Array
 from jax.typing import ArrayLike
 
+from propmdao._compile import compiled
 from propmdao.acoustics.broadband import (
     Section,
     SelfNoise,
@@ -25,7 +25,7 @@ from propmdao.records import Scalar
 BANDS_HZ = third_octave_centers(50.0, 20e3)
 
 
-@jax.jit
+@compiled
 def strip_flow(
     strips: Strips,
     relative_speed: Array,

@@ -19,6 +19,7 @@ import numpy as np
 from jax import Array
 from numpy.typing import ArrayLike
 
+from propmdao._compile import compiled
 from propmdao.acoustics.motion import Motion, Poses, poses
 from propmdao.acoustics.moving_sources import Sources, UnsteadySources, frame_sources
 from propmdao.acoustics.reception import Observers, hear, observer_clock
@@ -150,7 +151,7 @@ def _history(
     )
 
 
-@partial(jax.jit, static_argnames=("thickness", "n_times", "each"))
+@partial(compiled, static_argnames=("thickness", "n_times", "each"))
 def _march(
     thickness: bool,
     sources: Sources,

@@ -12,6 +12,7 @@ import numpy as np
 from jax import Array
 from jax.typing import ArrayLike
 
+from propmdao._compile import compiled
 from propmdao.acoustics.harmonic_sums import cos_sin, harmonic_sums
 from propmdao.geometry.surface import Panels
 from propmdao.records import PointLoads, record
@@ -42,7 +43,7 @@ class Tones:
         return self.thickness + self.loading
 
 
-@partial(jax.jit, static_argnames=("n_blades", "n_harmonics"))
+@partial(compiled, static_argnames=("n_blades", "n_harmonics"))
 def tones(
     panels: Panels,
     loads: PointLoads,

@@ -23,6 +23,8 @@ from jax import Array
 from jax.extend.core import Primitive
 from jax.interpreters import ad, batching, mlir
 
+from propmdao._compile import compiled
+
 
 @jax.custom_jvp
 def cos_sin(angle: Array) -> tuple[Array, Array]:
@@ -111,7 +113,7 @@ def _batch(arrays: Any, axes: Any) -> Any:
     return _sum_each_p.bind(*front), [0] * len(front)
 
 
-_sum_each_p.def_impl(jax.jit(_sum_each))
+_sum_each_p.def_impl(compiled(_sum_each))
 _sum_each_p.def_abstract_eval(
     lambda *arrays: [jax.core.ShapedArray(a.shape[:-1], a.dtype) for a in arrays]
 )

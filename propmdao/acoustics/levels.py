@@ -15,6 +15,8 @@ from jax import Array
 from jax.typing import ArrayLike
 from numpy.typing import NDArray
 
+from propmdao._compile import compiled
+
 REFERENCE_PRESSURE = 20e-6  # Pa, root mean square
 _SILENCE = 1e-20  # of the reference mean square: -200 dB
 
@@ -220,7 +222,7 @@ def pressure_history(
     return np.arange(n_times) / (n_times * passage_hz), np.fft.irfft(spectrum, n_times)
 
 
-@jax.jit
+@compiled
 def mean_square(amplitude: ArrayLike) -> Array:
     """Mean-square pressure of each tone.
 
@@ -238,7 +240,7 @@ def mean_square(amplitude: ArrayLike) -> Array:
     return 2 * (p.real**2 + p.imag**2)  # abs() has no derivative at silence
 
 
-@jax.jit
+@compiled
 def level_db(mean_square: ArrayLike) -> Array:
     """Level of mean-square pressures.
 

@@ -15,6 +15,7 @@ import numpy as np
 from jax import Array
 from numpy.typing import ArrayLike, NDArray
 
+from propmdao._compile import compiled
 from propmdao.acoustics.advanced_time import emit
 from propmdao.acoustics.formulation1a import Tones, require_subsonic_tip
 from propmdao.acoustics.harmonic_sums import cos_sin, harmonic_sums
@@ -29,7 +30,7 @@ from propmdao.acoustics.moving_sources import (
 )
 from propmdao.acoustics.rotors import Rotor, require_air
 from propmdao.geometry.surface import Panels
-from propmdao.records import PointLoads
+from propmdao.records import PointLoads, Scalar
 
 
 def rotor_tones(
@@ -145,7 +146,7 @@ def symmetry(azimuths: ArrayLike) -> int:
     return max(k for k in range(1, n + 1) if n % k == 0 and repeats(k))
 
 
-@partial(jax.jit, static_argnames=("thickness", "step", "n_harmonics"))
+@partial(compiled, static_argnames=("thickness", "step", "n_harmonics"))
 def _fourier_integral(
     thickness: bool,
     sources: Sources,
@@ -153,8 +154,8 @@ def _fourier_integral(
     tau: Array,
     observers: Array,
     velocity: Array,
-    omega: Array,
-    sound_speed: Array,
+    omega: Scalar,
+    sound_speed: Scalar,
     step: int,
     n_harmonics: int,
 ) -> Array:

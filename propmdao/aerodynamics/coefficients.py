@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-import jax
 import jax.numpy as jnp
 from jax import Array
 
+from propmdao._compile import compiled
 from propmdao.records import Scalar, record
 
 
@@ -30,7 +30,7 @@ class Coefficients:
     eta: Array
 
 
-@jax.jit
+@compiled
 def coefficients(
     thrust: Scalar,
     torque: Scalar,

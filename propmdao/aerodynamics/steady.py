@@ -15,6 +15,7 @@ import jax.numpy as jnp
 import numpy as np
 from jax import Array
 
+from propmdao._compile import compiled
 from propmdao.aerodynamics.lattice_loads import (
     LatticeGeometry,
     LatticeLoads,
@@ -162,7 +163,7 @@ def loads_at(
     )
 
 
-@partial(jax.jit, static_argnames="n_blades")
+@partial(compiled, static_argnames="n_blades")
 def solve_steady(
     nodes: Array,
     n_blades: int,

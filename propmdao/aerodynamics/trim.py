@@ -12,6 +12,7 @@ import jax.numpy as jnp
 import numpy as np
 from jax import Array
 
+from propmdao._compile import compiled
 from propmdao.aerodynamics.lattice_loads import LatticeLoads
 from propmdao.aerodynamics.roots import at_root, empty
 from propmdao.aerodynamics.section_laws import ViscousSections
@@ -237,7 +238,7 @@ def rotation_speed_by_interpolation(
     return low + (high - low) * (thrust_required - at_low) / (at_high - at_low)
 
 
-@partial(jax.jit, static_argnames="n_blades")
+@partial(compiled, static_argnames="n_blades")
 def solve_rotation_speed(
     nodes: Array,
     n_blades: int,
@@ -274,7 +275,7 @@ def solve_rotation_speed(
     return omega, missing
 
 
-@partial(jax.jit, static_argnames="n_blades")
+@partial(compiled, static_argnames="n_blades")
 def solve_trimmed(
     nodes: Array,
     n_blades: int,

@@ -15,6 +15,7 @@ import numpy as np
 from jax import Array
 from jax.typing import ArrayLike
 
+from propmdao._compile import compiled
 from propmdao.acoustics.broadband.boundary_layer import BoundaryLayer, Trip, boundary_layer
 from propmdao.acoustics.broadband.directivity import radiation
 from propmdao.acoustics.broadband.section import Section
@@ -51,7 +52,7 @@ class StripFlow:
     section: Section
 
 
-@partial(jax.jit, static_argnames=("n_blades", "n_azimuths", "trip", "tip"))
+@partial(compiled, static_argnames=("n_blades", "n_azimuths", "trip", "tip"))
 def rotor_self_noise(
     strips: StripFlow,
     n_blades: int,

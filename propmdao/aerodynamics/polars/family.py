@@ -9,6 +9,7 @@ import jax.numpy as jnp
 import numpy as np
 import numpy.typing as npt
 
+from propmdao._compile import compiled
 from propmdao.aerodynamics.polars.high_angle import ALPHA, FloatArray, IntArray, all_angles
 from propmdao.aerodynamics.polars.interpolation import clamped_stencil, dense
 from propmdao.aerodynamics.polars.table import PolarRangeWarning, PolarTable
@@ -49,7 +50,7 @@ class SectionPolars:
     weights: jax.Array
 
 
-@jax.jit
+@compiled
 def section_tables(
     polars: SectionPolars, weights: jax.Array, camber: jax.Array, thickness: jax.Array
 ) -> PolarTable:

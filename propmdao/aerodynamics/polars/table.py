@@ -9,6 +9,7 @@ import jax.numpy as jnp
 import numpy as np
 import numpy.typing as npt
 
+from propmdao._compile import compiled
 from propmdao.aerodynamics.polars.interpolation import clamped_stencil, periodic_stencil
 from propmdao.aerodynamics.polars.mach import MACH_LIMIT, prandtl_glauert
 from propmdao.records import record
@@ -131,7 +132,7 @@ def curve_coefficients(
     return factor * cl, jnp.exp(log_cd), factor * cm
 
 
-@jax.jit
+@compiled
 def section_coefficients(
     table: PolarTable, alpha: jax.Array, re: jax.Array, mach: jax.Array | float = 0.0
 ) -> tuple[jax.Array, jax.Array, jax.Array]:
