@@ -25,7 +25,7 @@ from propmdao.aerodynamics.steady import WAKE_AGES, solve_steady
 from propmdao.aerodynamics.strips import strip_radii
 from propmdao.aerodynamics.wake import wake_azimuths
 from propmdao.analysis import SOUND_SPEED, analyze
-from propmdao.comparison import Rows
+from propmdao.comparison import Rows, markdown
 from propmdao.geometry.blade import Blade, span_interpolation
 from propmdao.geometry.lattice import lattice_nodes, lattice_span
 from propmdao.propeller import Propeller, load_propeller
@@ -253,13 +253,6 @@ TABLES: dict[str, Callable[[], Rows]] = {
 }
 
 
-def markdown(rows: Rows) -> str:
-    """A table, first column to the left, numbers to the right."""
-    head, *body = rows
-    rule = ("---", *("---:" for _ in head[1:]))
-    return "\n".join("| " + " | ".join(row) + " |" for row in (head, rule, *body))
-
-
 def main() -> None:
     """Replace the tables of docs/verification.md."""
     parser = argparse.ArgumentParser(description=__doc__.split("\n\n")[0])
@@ -280,7 +273,7 @@ def main() -> None:
         pattern = re.compile(f"({re.escape(begin)}\n).*?({end})", re.DOTALL)
         text = markdown(TABLES[name]())
         written, n = pattern.subn(
-            lambda m, t=text: f"{m[1]}{t}\n{m[2]}", page.read_text(encoding="utf-8")
+            lambda m, t=text: f"{m[1]}{t}{m[2]}", page.read_text(encoding="utf-8")
         )
         if n != 1:
             raise SystemExit(f"{page.name} must have the table {name!r} once; it has it {n} times")

@@ -115,7 +115,7 @@ def side_by_side(rows: Sequence[Row], columns: Mapping[str, Mapping[str, Cell]])
 
 
 def markdown(rows: Rows) -> str:
-    """Write rows as a Markdown table.
+    """Write rows as a Markdown table, first column to the left, numbers to the right.
 
     Parameters
     ----------
@@ -128,7 +128,8 @@ def markdown(rows: Rows) -> str:
         Lines that end in a line break.
     """
     head, *body = rows
-    return "".join(f"| {' | '.join(row)} |\n" for row in (head, ("---",) * len(head), *body))
+    rule = ("---", *("---:" for _ in head[1:]))
+    return "".join(f"| {' | '.join(row)} |\n" for row in (head, rule, *body))
 
 
 def _format(cell: Cell, form: str) -> str:

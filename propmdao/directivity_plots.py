@@ -55,7 +55,7 @@ def directivity(
         if name in measured:
             at, known = (np.asarray(q, float) for q in measured[name])
             axes.plot(np.radians(at), known, "o", color=color, label=f"{name}, measured")
-    figure.legend(loc="center right", bbox_to_anchor=(0.97, 0.8))
+    figure.legend(loc="center left", bbox_to_anchor=(0.55, 0.85))
     return figure
 
 

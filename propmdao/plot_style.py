@@ -20,7 +20,8 @@ except ModuleNotFoundError as error:
 # Okabe and Ito's palette, which colour-blind people can tell apart.
 PART_COLORS = {"thickness": "#0072B2", "loading": "#D55E00", "total": "#000000"}
 BLADE_COLORS = ("#777777", "#009E73", "#CC79A7", "#E69F00")
-RUN_COLORS = ("#E69F00", "#009E73", "#0072B2", "#D55E00", "#CC79A7", "#000000")
+# A blade keeps its colour where it is one of several runs.
+RUN_COLORS = (*BLADE_COLORS, "#0072B2", "#D55E00", "#000000")
 LINE_STYLES = ("--", "-", "-.", ":")
 GRID: dict[str, Any] = {"color": "0.9", "linewidth": 0.8}
 

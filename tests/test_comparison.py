@@ -68,7 +68,7 @@ def test_markdown_has_a_row_for_each_and_cells_for_what_is_missing():
     lines = markdown(side_by_side([("A, m", "a", ".2f"), ("B", "b", ".0f")], COLUMNS)).splitlines()
     assert lines == [
         "|  | first of all | second | third |",
-        "| --- | --- | --- | --- |",
+        "| --- | ---: | ---: | ---: |",
         "| A, m | 1.23 | 1.00 |  |",
         "| B |  | 2 | 7 |",
     ]
