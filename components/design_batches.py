@@ -13,6 +13,7 @@ from propmdao.components.candidate import Array
 from propmdao.components.jax_component import JaxComponent, arrays
 from propmdao.components.model_run import ModelRun, run_system, said
 
+# Groups from the model down, each with the name of the subsystem that it hands inputs to.
 _Path = tuple[tuple[om.Group, str], ...]
 
 

