@@ -29,8 +29,12 @@ study: $(VENV)/installed
 test: $(VENV)/dev
 	$(BIN)/python -m pytest -m "not slow" -n 2
 
+# Reference data that stands beside the checkout is found without being named.
+ifneq ($(wildcard ../shared/data),)
+validation: export PROPMDAO_REFERENCE_DATA ?= $(realpath ../shared/data)
+endif
 validation: $(VENV)/dev
-	$(BIN)/python -m pytest -m "slow or validation"
+	$(BIN)/python -m pytest -m "slow or validation" -n 2
 
 lint: $(VENV)/dev
 	$(BIN)/ruff check .
