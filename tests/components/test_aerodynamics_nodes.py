@@ -48,7 +48,9 @@ FORWARD = pytest.param(True, marks=pytest.mark.slow)  # compiling it takes most 
 
 
 @pytest.mark.parametrize("loads", [False, FORWARD])
-@pytest.mark.parametrize("kind", [AerodynamicsComp, TrimmedAerodynamicsComp])
+@pytest.mark.parametrize(
+    "kind", [AerodynamicsComp, pytest.param(TrimmedAerodynamicsComp, marks=pytest.mark.slow)]
+)
 def test_partials_at_nodes(problem, assert_directional, kind, loads):
     """Without loads the forward products are sums over kept gradients, which compile nothing."""
     prob = problem(kind, 2, {**AIR, **GIVEN[kind]}, loads=loads)

@@ -35,7 +35,10 @@ def problem(propeller, small):
     return problem
 
 
-@pytest.mark.parametrize(("viscous", "trip"), [(True, "none"), (True, "heavy"), (False, "none")])
+@pytest.mark.parametrize(
+    ("viscous", "trip"),
+    [(True, "none"), pytest.param(True, "heavy", marks=pytest.mark.slow), (False, "none")],
+)
 def test_group_agrees_with_analyze(problem, propeller, small, viscous, trip):
     prob = problem(viscous=viscous, broadband=viscous, trip=trip)
     prob.setup()
@@ -163,8 +166,15 @@ def test_wrong_control_points_are_clear_errors(problem, distributions, message):
         problem(design_distributions=distributions).setup()
 
 
-@pytest.mark.parametrize("speed", [0.5, 8.0])
-@pytest.mark.parametrize("trim", ["thrust", "rpm"])
+@pytest.mark.parametrize(
+    ("trim", "speed"),
+    [
+        ("thrust", 0.5),
+        ("rpm", 8.0),
+        pytest.param("thrust", 8.0, marks=pytest.mark.slow),
+        pytest.param("rpm", 0.5, marks=pytest.mark.slow),
+    ],
+)
 def test_totals_against_differences(problem, assert_totals, trim, speed):
     """From blade, operating point and observers to loads and noise, trim in between.
 
