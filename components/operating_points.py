@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
+from itertools import compress
 from typing import Any
 
 import numpy as np
@@ -113,19 +114,20 @@ class OperatingPointsComp(JaxComponent):
             try:
                 values = still if self.at_rest(at) else self.values_at(at)
             except om.AnalysisError as error:
-                raise self._of_node(point, error) from error
+                self._name_node(point, error)
+                raise
             for name in self._output_shapes:
                 self._at(point, name, outputs)[:] = values[name]
 
     def at_designs(
         self, designs: Sequence[Arrays], at_once: int
     ) -> list[Arrays | om.AnalysisError]:
-        points = [at for design in designs for _, at in self._points(design)]
-        moving = [at for at in points if not self.at_rest(at)]
-        found = iter(self._at_points(moving, at_once * self.n_points()))
-        still: Arrays = dict.fromkeys(self._output_shapes, 0.0)
-        values = [still if self.at_rest(at) else next(found) for at in points]
         n = self.n_points()
+        points = [at for design in designs for _, at in self._points(design)]
+        moves = [not self.at_rest(at) for at in points]
+        found = iter(self._at_points(list(compress(points, moves)), at_once * n))
+        still: Arrays = dict.fromkeys(self._output_shapes, 0.0)
+        values = [next(found) if moving else still for moving in moves]
         return [self._together(values[i : i + n]) for i in range(0, len(values), n)]
 
     def _together(self, values: Sequence[Arrays | om.AnalysisError]) -> Arrays | om.AnalysisError:
@@ -133,16 +135,16 @@ class OperatingPointsComp(JaxComponent):
         outputs = {name: np.zeros_like(self._outputs[name]) for name in self._output_shapes}
         for point, of_point in enumerate(values):
             if isinstance(of_point, om.AnalysisError):
-                return self._of_node(point, of_point)
+                self._name_node(point, of_point)
+                return of_point
             for name in outputs:
                 self._at(point, name, outputs)[:] = of_point[name]
         return outputs
 
-    def _of_node(self, point: int, error: om.AnalysisError) -> om.AnalysisError:
-        """Error with the node where there are several."""
-        if self.options["num_nodes"] is None:
-            return error
-        return om.AnalysisError(f"node {point}: {error}")
+    def _name_node(self, point: int, error: om.AnalysisError) -> None:
+        """Put the node into the message of an error, where there are several."""
+        if self.options["num_nodes"] is not None:
+            error.args = (f"node {point}: {error}",)
 
     def compute_jacvec_product(self, inputs: Any, d_inputs: Any, d_outputs: Any, mode: str) -> None:
         start, end = (d_inputs, d_outputs) if mode == "fwd" else (d_outputs, d_inputs)

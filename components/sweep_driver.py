@@ -182,7 +182,7 @@ class SweepDriver(om.AnalysisDriver):
             for run in runner.run(map(start, samples)):
                 put_outputs(model, run.outputs)
                 self.result.model_evals += run.error is None and not run.failure
-                yield run.failure or (_said(run.error) if run.error else "")
+                yield run.failure or (_with_type(run.error) if run.error else "")
             return
         for sample in samples:
             start(sample)
@@ -192,11 +192,11 @@ class SweepDriver(om.AnalysisDriver):
             except om.AnalysisError as error:
                 reason = said(error)
             except Exception as error:  # as om.AnalysisDriver: a survey does not end at a sample
-                reason = _said(error)
+                reason = _with_type(error)
             yield reason
 
 
-def _said(error: Exception) -> str:
+def _with_type(error: Exception) -> str:
     return f"{type(error).__name__}: {error}"
 
 
