@@ -7,12 +7,13 @@ import jax.numpy as jnp
 import numpy as np
 import pytest
 
-from propmdao.acoustics import arc, tones
+from propmdao.acoustics.kinematics.observers import arc
+from propmdao.acoustics.sources.formulation1a import tones
+from propmdao.formats.propellers import load_propeller
 from propmdao.geometry.blade import Blade, span_interpolation
 from propmdao.geometry.lattice import lattice_nodes, lattice_span
 from propmdao.geometry.surface import surface_nodes, surface_panels, surface_span
-from propmdao.propeller import load_propeller
-from propmdao.records import PointLoads
+from propmdao.records.loads import PointLoads
 
 
 @pytest.fixture(scope="module", params=[1, 9], ids="observers-{}".format)

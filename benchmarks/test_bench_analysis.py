@@ -15,17 +15,17 @@ import jax.numpy as jnp
 import numpy as np
 import pytest
 
-from propmdao.aerodynamics.biot_savart import filament_velocities
-from propmdao.aerodynamics.polars import polars_for
-from propmdao.aerodynamics.section_laws import viscous_sections
-from propmdao.aerodynamics.steady import WAKE_AGES, solve_steady
-from propmdao.aerodynamics.strips import strip_radii
+from propmdao.aerodynamics.lattice.strips import strip_radii
+from propmdao.aerodynamics.sections.laws import viscous_sections
+from propmdao.aerodynamics.sections.polars.propeller_polars import polars_for
+from propmdao.aerodynamics.solutions.axial import WAKE_AGES, solve_steady
 from propmdao.aerodynamics.trim import solve_rotation_speed
-from propmdao.analysis import analyze
-from propmdao.fidelity import Fidelity
+from propmdao.aerodynamics.vortices.biot_savart import filament_velocities
+from propmdao.analysis.single_point import analyze
+from propmdao.formats.propellers import load_propeller
 from propmdao.geometry.blade import Blade, span_interpolation
 from propmdao.geometry.lattice import lattice_nodes, lattice_span
-from propmdao.propeller import load_propeller
+from propmdao.records.fidelity import Fidelity
 
 SLOW_FLYER = load_propeller("apcsf_11x4.7")
 NINE = [(1.905, float(elevation)) for elevation in np.linspace(-90.0, 90.0, 9)]
@@ -121,7 +121,15 @@ def test_wake_kernel(benchmark):
 @pytest.mark.parametrize("cache", ["cold", "warm"])
 def test_command_line(benchmark, tmp_path, cache):
     """`propmdao analyze` as a process of its own, without and with compiled code kept."""
-    command = [sys.executable, "-m", "propmdao.cli", "analyze", "apcsf_11x4.7", "--thrust", "1.2"]
+    command = [
+        sys.executable,
+        "-m",
+        "propmdao.commands.program",
+        "analyze",
+        "apcsf_11x4.7",
+        "--thrust",
+        "1.2",
+    ]
     command += ["--speed", "8", "--arc", "1.905", "-45", "0", "--json"]
     rounds = 0
 

@@ -7,13 +7,10 @@ import jax.numpy as jnp
 import numpy as np
 import pytest
 
-from propmdao.acoustics import arc
-from propmdao.acoustics.broadband import (
-    Section,
-    StripFlow,
-    rotor_self_noise,
-    third_octave_centers,
-)
+from propmdao.acoustics.broadband.rotor import StripFlow, rotor_self_noise
+from propmdao.acoustics.broadband.section import Section
+from propmdao.acoustics.broadband.self_noise import third_octave_centers
+from propmdao.acoustics.kinematics.observers import arc
 
 BANDS = third_octave_centers(100, 80e3)
 

@@ -15,9 +15,9 @@ import numpy as np
 import openmdao.api as om
 import pytest
 
-from propmdao.acoustics.observers import arc
+from propmdao.acoustics.kinematics.observers import arc
 from propmdao.components import PropellerGroup
-from propmdao.propeller import load_propeller
+from propmdao.formats.propellers import load_propeller
 
 RESPONSES = ["oaspl_db", "torque", "rpm"]
 DISTRIBUTIONS = (

@@ -5,9 +5,9 @@ from __future__ import annotations
 import openmdao.api as om
 import pytest
 
-from propmdao.acoustics.observers import arc
+from propmdao.acoustics.kinematics.observers import arc
 from propmdao.components import DifferentialEvolutionDriver, PropellerGroup
-from propmdao.propeller import load_propeller
+from propmdao.formats.propellers import load_propeller
 
 THREE_POINTS = [0.15, 0.5, 1.0]
 

@@ -37,14 +37,14 @@ def _main(method: str, seconds: float) -> None:
     import jax.numpy as jnp
     import numpy as np
 
-    from propmdao.acoustics.flyover import flyover_histories
-    from propmdao.acoustics.motion import translation
-    from propmdao.acoustics.reception import Observers
-    from propmdao.acoustics.rotors import Rotor, equally_spaced, rotor_histories
-    from propmdao.analysis import analyze
+    from propmdao.acoustics.kinematics.motion import translation
+    from propmdao.acoustics.kinematics.reception import Observers
+    from propmdao.acoustics.sources.flyover import flyover_histories
+    from propmdao.acoustics.sources.rotors import Rotor, equally_spaced, rotor_histories
+    from propmdao.analysis.single_point import analyze
+    from propmdao.formats.propellers import load_propeller
     from propmdao.geometry.blade import Blade, span_interpolation
     from propmdao.geometry.surface import surface_nodes, surface_panels, surface_span
-    from propmdao.propeller import load_propeller
 
     propeller = load_propeller("apcsf_11x4.7")
     span = span_interpolation(propeller.r_over_R, surface_span(propeller.r_over_R[0], 80))

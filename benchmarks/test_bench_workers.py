@@ -11,8 +11,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from propmdao.components.model_pool import ModelPool
-from propmdao.worker_processes import start_workers
+from propmdao.components.drivers.runs.model_pool import ModelPool
+from propmdao.runtime.worker_processes import start_workers
 
 N_DESIGNS, ROUNDS = 12, 7
 

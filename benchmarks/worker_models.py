@@ -2,9 +2,9 @@
 
 import openmdao.api as om
 
-from propmdao.acoustics.observers import arc
+from propmdao.acoustics.kinematics.observers import arc
 from propmdao.components import PropellerGroup
-from propmdao.propeller import load_propeller
+from propmdao.formats.propellers import load_propeller
 
 
 def low_noise():

@@ -3,13 +3,13 @@
 from propmdao.components.acoustics_comp import AcousticsComp
 from propmdao.components.aerodynamics_comp import AerodynamicsComp
 from propmdao.components.broadband_comp import BroadbandComp
-from propmdao.components.constrained_search import Generation
-from propmdao.components.differential_evolution_driver import DifferentialEvolutionDriver
+from propmdao.components.drivers.constrained_search import Generation
+from propmdao.components.drivers.differential_evolution_driver import DifferentialEvolutionDriver
+from propmdao.components.drivers.sweep_driver import SweepDriver
 from propmdao.components.geometry_comp import GeometryComp
 from propmdao.components.noise_objective_comp import NoiseObjectiveComp
 from propmdao.components.propeller_group import PropellerGroup
 from propmdao.components.rotation_speed_comp import RotationSpeedComp
-from propmdao.components.sweep_driver import SweepDriver
 from propmdao.components.trimmed_aerodynamics_comp import TrimmedAerodynamicsComp
 
 __all__ = [

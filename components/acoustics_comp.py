@@ -6,14 +6,15 @@ from typing import Any
 
 import numpy as np
 
-from propmdao.acoustics.formulation1a import tones
-from propmdao.acoustics.levels import oaspl_db, oaspl_dba, spl_db
-from propmdao.components.jax_component import Arrays
+from propmdao.acoustics.levels.decibels import oaspl_db, spl_db
+from propmdao.acoustics.levels.weighting import oaspl_dba
+from propmdao.acoustics.sources.formulation1a import tones
+from propmdao.components.bases.jax_component import Arrays
+from propmdao.components.bases.nodes_comp import STATIC, OperatingPointsComp
 from propmdao.components.noise_inputs import add_noise_inputs, check_rotor, noise_at
-from propmdao.components.operating_points import STATIC, OperatingPointsComp
-from propmdao.fidelity import Fidelity
 from propmdao.geometry.surface import surface_panels
-from propmdao.records import PointLoads
+from propmdao.records.fidelity import Fidelity
+from propmdao.records.loads import PointLoads
 
 
 class AcousticsComp(OperatingPointsComp):
@@ -61,7 +62,7 @@ class AcousticsComp(OperatingPointsComp):
     n_loads : int
         Number of point forces.
     observers : (n_observers, 3) array
-        Initial `observer_position` [m]; `propmdao.acoustics.observers.arc` makes one.
+        Initial `observer_position` [m]; `propmdao.acoustics.kinematics.observers.arc` makes one.
     fidelity : Fidelity
         Size of the surface mesh and number of harmonics.
 

@@ -8,20 +8,20 @@ import jax
 import openmdao.api as om
 
 from propmdao.aerodynamics.coefficients import coefficients
-from propmdao.aerodynamics.known_root import steady_at
-from propmdao.aerodynamics.solution import SteadySolution, failure
-from propmdao.aerodynamics.steady import solve_steady
-from propmdao.analysis_result import RAD_PER_S
-from propmdao.components.jax_component import Arrays
-from propmdao.components.operating_points import OperatingPointsComp
-from propmdao.components.root_component import RootComponent
+from propmdao.aerodynamics.solutions.axial import solve_steady
+from propmdao.aerodynamics.solutions.known_root import steady_at
+from propmdao.aerodynamics.solutions.result import SteadySolution, failure
+from propmdao.components.bases.jax_component import Arrays
+from propmdao.components.bases.nodes_comp import OperatingPointsComp
+from propmdao.components.bases.root_component import RootComponent
 from propmdao.components.rotor_inputs import (
     add_rotor_inputs,
     declare_rotor,
     require_diameter,
     rotor_at,
 )
-from propmdao.fidelity import Fidelity
+from propmdao.records.fidelity import Fidelity
+from propmdao.records.units import RAD_PER_S
 
 
 def n_loads(fidelity: Fidelity) -> int:

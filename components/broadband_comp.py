@@ -11,16 +11,17 @@ from jax import Array
 from openmdao.utils.options_dictionary import OptionsDictionary
 
 from propmdao.acoustics.broadband.boundary_layer import Trip
-from propmdao.acoustics.levels import energy_sum_db, level_db, level_dba
-from propmdao.aerodynamics.rings import vortex_rings
-from propmdao.aerodynamics.strips import blade_strips, strip_radii
-from propmdao.components.jax_component import Arrays
+from propmdao.acoustics.levels.decibels import energy_sum_db, level_db
+from propmdao.acoustics.levels.weighting import level_dba
+from propmdao.aerodynamics.lattice.rings import vortex_rings
+from propmdao.aerodynamics.lattice.strips import blade_strips, strip_radii
+from propmdao.analysis.self_noise import BANDS_HZ, self_noise, strip_flow
+from propmdao.components.bases.jax_component import Arrays
+from propmdao.components.bases.nodes_comp import STATIC, OperatingPointsComp
 from propmdao.components.noise_inputs import add_noise_inputs, check_rotor, noise_at
-from propmdao.components.operating_points import STATIC, OperatingPointsComp
-from propmdao.fidelity import Fidelity
 from propmdao.geometry.blade import Blade, span_interpolation
-from propmdao.propeller import Propeller
-from propmdao.self_noise import BANDS_HZ, self_noise, strip_flow
+from propmdao.propeller.description import Propeller
+from propmdao.records.fidelity import Fidelity
 
 _SILENCE_DB = -200.0
 
@@ -60,7 +61,7 @@ class BroadbandComp(OperatingPointsComp):
     broadband_mean_square_pressure : (n_observers, n_bands) array
         Of the noise in each third octave, ``Pa**2``; these add for any number of rotors.
     band_frequency : (n_bands,) array
-        Mid-band frequencies, `propmdao.self_noise.BANDS_HZ`, ``Hz``.
+        Mid-band frequencies, `propmdao.analysis.self_noise.BANDS_HZ`, ``Hz``.
     oaspl_broadband_db, oaspl_broadband_dba : (n_observers,) arrays
         Overall level of the noise alone, dB re 20 uPa, and A-weighted, dBA.
     oaspl_total_db, oaspl_total_dba : (n_observers,) arrays
@@ -73,7 +74,7 @@ class BroadbandComp(OperatingPointsComp):
     propeller : Propeller
         Number of blades, stations, section shapes and initial thickness.
     observers : (n_observers, 3) array
-        Initial `observer_position` [m]; `propmdao.acoustics.observers.arc` makes one.
+        Initial `observer_position` [m]; `propmdao.acoustics.kinematics.observers.arc` makes one.
     fidelity : Fidelity
         Numbers of panels.
     trip : {"none", "light", "heavy"}

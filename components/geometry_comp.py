@@ -8,15 +8,15 @@ from typing import Any
 import numpy as np
 import openmdao.api as om
 
-from propmdao.aerodynamics.polars import SectionPolars, blade_tables
-from propmdao.aerodynamics.strips import strip_radii
-from propmdao.components.jax_component import Arrays, JaxComponent, evaluate
-from propmdao.components.operating_points import STATIC
+from propmdao.aerodynamics.lattice.strips import strip_radii
+from propmdao.aerodynamics.sections.polars.family import SectionPolars, blade_tables
+from propmdao.components.bases.jax_component import Arrays, JaxComponent, evaluate
+from propmdao.components.bases.nodes_comp import STATIC
 from propmdao.components.rotor_inputs import require_diameter
-from propmdao.fidelity import Fidelity
 from propmdao.geometry.blade import Blade, design_lift_coefficient, span_interpolation
 from propmdao.geometry.meshes import blade_meshes, mesh_radii
-from propmdao.propeller import Propeller
+from propmdao.propeller.description import Propeller
+from propmdao.records.fidelity import Fidelity
 
 CAMBER_INPUTS = ("camber_over_chord", "design_lift_coefficient")
 
@@ -74,7 +74,7 @@ class GeometryComp(JaxComponent):
         Points of the section contours for acoustics, ``m``.
     section_polars : (n_spanwise, 3, n_re, n_alpha) array
         With option `polars`: lift, logarithm of drag and moment coefficients of the sections in the
-        middle of the strips, the values of a `propmdao.aerodynamics.polars.PolarTable`.
+        middle of the strips, the values of a `propmdao.aerodynamics.sections.polars.PolarTable`.
 
     Options
     -------
@@ -85,7 +85,7 @@ class GeometryComp(JaxComponent):
     camber : str
         Which of the two camber inputs there is.
     polars : SectionPolars or None
-        Of `propmdao.aerodynamics.polars.polars_for`; None for inviscid flow.
+        Of `propmdao.aerodynamics.sections.polars.polars_for`; None for inviscid flow.
 
     Raises
     ------

@@ -7,11 +7,10 @@ from typing import Any
 import numpy as np
 import openmdao.api as om
 
-from propmdao.acoustics.formulation1a import require_subsonic_tip
-from propmdao.acoustics.observers import require_outside_rotor
-from propmdao.analysis_result import RAD_PER_S
-from propmdao.components.jax_component import Arrays
-from propmdao.components.operating_points import STATIC, OperatingPointsComp
+from propmdao.acoustics.kinematics.limits import require_outside_rotor, require_subsonic_tip
+from propmdao.components.bases.jax_component import Arrays
+from propmdao.components.bases.nodes_comp import STATIC, OperatingPointsComp
+from propmdao.records.units import RAD_PER_S
 
 
 def add_noise_inputs(component: OperatingPointsComp, observers: np.ndarray) -> None:

@@ -7,17 +7,18 @@ from collections.abc import Mapping
 import numpy as np
 import openmdao.api as om
 
-from propmdao.aerodynamics.polars import SectionPolars, polars_for
+from propmdao.aerodynamics.sections.polars.family import SectionPolars
+from propmdao.aerodynamics.sections.polars.propeller_polars import polars_for
 from propmdao.components.acoustics_comp import AcousticsComp
 from propmdao.components.aerodynamics_comp import AerodynamicsComp, n_loads
+from propmdao.components.bases.nodes_comp import declare_num_nodes
 from propmdao.components.broadband_comp import BroadbandComp, declare_trip
 from propmdao.components.geometry_comp import CAMBER_INPUTS, GeometryComp, blade_distributions
-from propmdao.components.operating_points import declare_num_nodes
 from propmdao.components.rotation_speed_comp import RotationSpeedComp
 from propmdao.components.rpm_bounds import declare_bounds
 from propmdao.components.trimmed_aerodynamics_comp import TrimmedAerodynamicsComp
-from propmdao.fidelity import Fidelity
-from propmdao.propeller import Propeller
+from propmdao.propeller.description import Propeller
+from propmdao.records.fidelity import Fidelity
 
 TRIM_METHODS = ("solve", "two_point")
 SPLINE_METHODS = ("slinear", "akima", "cubic")
@@ -71,7 +72,7 @@ broadband_mean_square_pressure, band_frequency
     propeller : Propeller
         The described propeller; its values are the initial ones.
     observers : (n_observers, 3) array or None
-        Initial observer positions [m]; `propmdao.acoustics.observers.arc` makes them. None
+        Initial observer positions [m]; `propmdao.arc` makes them. None
         (default): thrust and power alone, neither loads nor noise are outputs, and the derivatives
         of missions are cheap.
     fidelity : Fidelity
@@ -94,7 +95,7 @@ broadband_mean_square_pressure, band_frequency
     stall_delay : bool
         Whether rotation delays the stall of the sections.
     polars : SectionPolars or None
-        Of `propmdao.aerodynamics.polars.polars_for`, for tables of one's own; by default the
+        Of `polars_for`, for tables of one's own; by default the
         catalogue's.
     broadband : bool
         Add the broadband self-noise of the blades.

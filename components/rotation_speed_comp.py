@@ -7,9 +7,8 @@ from typing import Any
 import openmdao.api as om
 
 from propmdao.aerodynamics.trim import rotation_speed_by_interpolation
-from propmdao.analysis_result import RAD_PER_S
-from propmdao.components.jax_component import Arrays
-from propmdao.components.operating_points import OperatingPointsComp
+from propmdao.components.bases.jax_component import Arrays
+from propmdao.components.bases.nodes_comp import OperatingPointsComp
 from propmdao.components.rotor_inputs import (
     add_rotor_inputs,
     declare_rotor,
@@ -17,6 +16,7 @@ from propmdao.components.rotor_inputs import (
     rotor_at,
 )
 from propmdao.components.rpm_bounds import bounds_at, declare_bounds, given_bounds
+from propmdao.records.units import RAD_PER_S
 
 
 class RotationSpeedComp(OperatingPointsComp):

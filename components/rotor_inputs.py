@@ -9,11 +9,12 @@ import jax.numpy as jnp
 import openmdao.api as om
 from openmdao.utils.options_dictionary import OptionsDictionary
 
-from propmdao.aerodynamics.polars import PolarTable, SectionPolars
-from propmdao.aerodynamics.section_laws import AIR_VISCOSITY, ViscousSections
-from propmdao.components.jax_component import Arrays
-from propmdao.components.operating_points import STATIC, OperatingPointsComp
-from propmdao.fidelity import Fidelity
+from propmdao.aerodynamics.sections.laws import AIR_VISCOSITY, ViscousSections
+from propmdao.aerodynamics.sections.polars.family import SectionPolars
+from propmdao.aerodynamics.sections.polars.table import PolarTable
+from propmdao.components.bases.jax_component import Arrays
+from propmdao.components.bases.nodes_comp import STATIC, OperatingPointsComp
+from propmdao.records.fidelity import Fidelity
 
 
 def declare_rotor(options: OptionsDictionary) -> None:

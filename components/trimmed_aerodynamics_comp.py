@@ -6,13 +6,13 @@ from typing import Any
 
 import openmdao.api as om
 
-from propmdao.aerodynamics.known_root import trimmed_at
+from propmdao.aerodynamics.solutions.known_root import trimmed_at
 from propmdao.aerodynamics.trim import TrimError, require_reached, solve_trimmed
-from propmdao.analysis_result import RAD_PER_S
 from propmdao.components.aerodynamics_comp import AerodynamicsComp, loads
-from propmdao.components.jax_component import Arrays
+from propmdao.components.bases.jax_component import Arrays
 from propmdao.components.rotor_inputs import require_diameter, rotor_at
 from propmdao.components.rpm_bounds import bounds_at, declare_bounds, given_bounds
+from propmdao.records.units import RAD_PER_S
 
 
 class TrimmedAerodynamicsComp(AerodynamicsComp):

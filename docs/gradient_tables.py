@@ -14,7 +14,7 @@ from collections.abc import Callable
 from functools import partial
 from pathlib import Path
 
-from propmdao.comparison import Rows, side_by_side
+from propmdao.analysis.comparisons import Rows, side_by_side
 
 ROOT = Path(__file__).parents[1]
 sys.path.insert(0, str(ROOT / "studies"))

@@ -19,17 +19,18 @@ from pathlib import Path
 
 import numpy as np
 
-from propmdao.aerodynamics.polars import polars_for
-from propmdao.aerodynamics.section_laws import viscous_sections
-from propmdao.aerodynamics.steady import WAKE_AGES, solve_steady
-from propmdao.aerodynamics.strips import strip_radii
-from propmdao.aerodynamics.wake import wake_azimuths
-from propmdao.analysis import SOUND_SPEED, analyze
-from propmdao.comparison import Rows, markdown
+from propmdao.aerodynamics.lattice.strips import strip_radii
+from propmdao.aerodynamics.sections.laws import viscous_sections
+from propmdao.aerodynamics.sections.polars.propeller_polars import polars_for
+from propmdao.aerodynamics.solutions.axial import WAKE_AGES, solve_steady
+from propmdao.aerodynamics.wakes.ages import wake_azimuths
+from propmdao.analysis.comparisons import Rows, markdown
+from propmdao.analysis.single_point import SOUND_SPEED, analyze
+from propmdao.analysis.wind_tunnel import Points, calibrated_twist_deg, computed
+from propmdao.formats.propellers import load_propeller
 from propmdao.geometry.blade import Blade, span_interpolation
 from propmdao.geometry.lattice import lattice_nodes, lattice_span
-from propmdao.propeller import Propeller, load_propeller
-from propmdao.wind_tunnel import Points, calibrated_twist_deg, computed
+from propmdao.propeller.description import Propeller
 
 HERE = Path(__file__).parent
 sys.path.insert(0, str(HERE.parent / "studies"))

@@ -22,20 +22,20 @@ import numpy as np
 from rich.console import Console
 from rich.table import Table
 
-from propmdao import acoustic_plots, directivity_plots
-from propmdao.acoustic_plots import Heard
-from propmdao.acoustics.broadband import SelfNoise
-from propmdao.acoustics.levels import energy_sum_db, level_db, spl_db
-from propmdao.acoustics.sound import (
+from propmdao.acoustics.broadband.self_noise import SelfNoise
+from propmdao.acoustics.levels.decibels import energy_sum_db, level_db, spl_db
+from propmdao.acoustics.sounds.recordings import (
     SAMPLE_RATE,
     broadband_record,
     common_full_scale,
     tone_record,
-    write_wav,
 )
-from propmdao.analysis import Analysis, analyze
-from propmdao.propeller import load_propeller
-from propmdao.self_noise import BANDS_HZ
+from propmdao.analysis.self_noise import BANDS_HZ
+from propmdao.analysis.single_point import Analysis, analyze
+from propmdao.figures import acoustic_plots, directivity
+from propmdao.figures.acoustic_plots import Heard
+from propmdao.formats.propellers import load_propeller
+from propmdao.formats.wav import write_wav
 
 PROPELLER = "apcsf_11x4.7"
 OTHER = "apcsf_10x4.7"  # to be heard beside it, at the same thrust
@@ -230,21 +230,21 @@ def draw(computed: Mapping[int, Hover], bands: Sequence[Comparison], test: Mappi
     )
 
     sources = acoustic_plots.source_levels(sound)
-    directivity_plots.directivity(
+    directivity.directivity(
         arc, {name: shown.on_arc(level) for name, level in sources.items()}
     ).savefig(output / "figure_4_14a_sources.png")  # fmt: skip
     overall = {names[rpm]: one.on_arc(acoustic_plots.source_levels(one.heard)["total"])
                for rpm, one in computed.items()}  # fmt: skip
     heard = {names[one.rpm]: ([one.elevation_deg], [float(energy_sum_db(one.measured_db))])
              for one in bands if one.what == "total"}  # fmt: skip
-    directivity_plots.directivity(arc, overall, heard).savefig(output / "figure_4_14b_total.png")
+    directivity.directivity(arc, overall, heard).savefig(output / "figure_4_14b_total.png")
 
     passage = test["blade_passage"]
     tone = {names[rpm]: one.on_arc(np.asarray(spl_db(one.analysis.tones.total[:, 0])))
             for rpm, one in computed.items()}  # fmt: skip
     known = {f"{rpm} rpm": (passage["elevation_deg"], level)
              for rpm, level in zip(passage["rpm"], passage["spl_db"], strict=True)}  # fmt: skip
-    directivity_plots.directivity(arc, tone, known, "SPL at blade passage").savefig(
+    directivity.directivity(arc, tone, known, "SPL at blade passage").savefig(
         output / "figure_4_15_blade_passage.png"
     )
 

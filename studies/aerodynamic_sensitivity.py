@@ -21,21 +21,23 @@ import numpy as np
 from aerodynamic_validation import measurements, show, write_csv
 from scipy.optimize import brentq
 
-from propmdao import measurement_plots
 from propmdao.aerodynamics.coefficients import coefficients
-from propmdao.aerodynamics.lattice_loads import LatticeLoads, lattice_geometry, loads_with_wake
-from propmdao.aerodynamics.polars import SectionPolars, neuralfoil_tables, polars_for
-from propmdao.aerodynamics.polars.family import shape_values
-from propmdao.aerodynamics.polars.shipped import limits, shape, shipped_tables
-from propmdao.aerodynamics.section_laws import viscous_sections
-from propmdao.aerodynamics.steady import WAKE_AGES, Flow, induced_velocity
-from propmdao.aerodynamics.strips import strip_radii
-from propmdao.aerodynamics.wake import core_radius, helical_wake
-from propmdao.analysis import SOUND_SPEED
-from propmdao.geometry.blade import Blade, span_interpolation
-from propmdao.geometry.lattice import lattice_nodes, lattice_span
-from propmdao.propeller import Propeller, load_propeller
-from propmdao.wind_tunnel import (
+from propmdao.aerodynamics.lattice.strips import strip_radii
+from propmdao.aerodynamics.sections.laws import viscous_sections
+from propmdao.aerodynamics.sections.polars import neuralfoil_tables
+from propmdao.aerodynamics.sections.polars.family import SectionPolars, shape_values
+from propmdao.aerodynamics.sections.polars.propeller_polars import polars_for
+from propmdao.aerodynamics.sections.polars.shipped import limits, shape, shipped_tables
+from propmdao.aerodynamics.solutions.axial import WAKE_AGES, Flow, induced_velocity
+from propmdao.aerodynamics.solutions.lattice_loads import (
+    LatticeLoads,
+    lattice_geometry,
+    loads_with_wake,
+)
+from propmdao.aerodynamics.vortices.cores import core_radius
+from propmdao.aerodynamics.wakes.helical import helical_wake
+from propmdao.analysis.single_point import SOUND_SPEED
+from propmdao.analysis.wind_tunnel import (
     Evaluate,
     Points,
     WindTunnel,
@@ -43,6 +45,11 @@ from propmdao.wind_tunnel import (
     computed,
     errors,
 )
+from propmdao.figures import comparisons
+from propmdao.formats.propellers import load_propeller
+from propmdao.geometry.blade import Blade, span_interpolation
+from propmdao.geometry.lattice import lattice_nodes, lattice_span
+from propmdao.propeller.description import Propeller
 
 PITCH = {"apcsf_11x4.7": 0.11938, "apce_10x7": 0.1778}  # m, the maker's: 4.7 and 7 in
 OUTBOARD = 0.55  # r/R from which the maker's table of the sister 10x7SF has its nominal pitch
@@ -217,7 +224,7 @@ def main() -> None:
             f"Twist offset for the measured static CT: {fits_over_rpm(tunnel.static.rpm, still[0])}"
         )
         labels = "twist offset for the measured CT, deg", "error of CP with it, %"
-        figure = measurement_plots.over_rpm_and_advance_ratio(
+        figure = comparisons.over_rpm_and_advance_ratio(
             tunnel.static, climbing, dict(zip(labels, zip(still, moving, strict=True), strict=True))
         )
         figure.savefig(output / f"{case}_twist_needed.png")

@@ -18,9 +18,7 @@ import numpy as np
 from rich.console import Console
 from rich.table import Table
 
-from propmdao import measurement_plots
-from propmdao.propeller import load_propeller
-from propmdao.wind_tunnel import (
+from propmdao.analysis.wind_tunnel import (
     Errors,
     Points,
     WindTunnel,
@@ -29,6 +27,8 @@ from propmdao.wind_tunnel import (
     errors,
     read_wind_tunnel,
 )
+from propmdao.figures import comparisons
+from propmdao.formats.propellers import load_propeller
 
 MEASUREMENTS = Path(__file__).parent / "measurements"
 # Propeller of the catalogue and who measured it.
@@ -173,9 +173,9 @@ def main() -> None:
         write_points(output / f"{case}.csv", tunnel, columns)
         names = [f"{case}, {column.name} ({column.twist_deg:+.2f} deg)" for column in columns]
         moving = {name: column.dynamic for name, column in zip(names, columns, strict=True)}
-        measurement_plots.performance(tunnel.dynamic, moving).savefig(output / f"{case}.png")
+        comparisons.performance(tunnel.dynamic, moving).savefig(output / f"{case}.png")
         still = {name: column.static for name, column in zip(names, columns, strict=True)}
-        figure = measurement_plots.static_performance(tunnel.static, still)
+        figure = comparisons.static_performance(tunnel.static, still)
         figure.savefig(output / f"{case}_static.png")
     table = summary(every)
     write_csv(output / "summary.csv", table)

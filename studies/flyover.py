@@ -15,15 +15,15 @@ from pathlib import Path
 
 import numpy as np
 
-from propmdao import acoustic_plots, directivity_plots
-from propmdao.acoustics.ground import flyover_track
-from propmdao.acoustics.motion import poses
-from propmdao.acoustics.observers import directions, sphere
-from propmdao.analysis import SOUND_SPEED, Analysis, analyze
-from propmdao.flyover_noise import fly_over
-from propmdao.flyover_result import PARTS, STEP, Flight
-from propmdao.propeller import load_propeller
-from propmdao.self_noise import BANDS_HZ
+from propmdao.acoustics.kinematics.motion import poses
+from propmdao.acoustics.kinematics.observers import directions, sphere
+from propmdao.acoustics.kinematics.tracks import flyover_track
+from propmdao.analysis.flyover_results import PARTS, STEP, Flight
+from propmdao.analysis.flyovers import fly_over
+from propmdao.analysis.self_noise import BANDS_HZ
+from propmdao.analysis.single_point import SOUND_SPEED, Analysis, analyze
+from propmdao.figures import acoustic_plots, directivity
+from propmdao.formats.propellers import load_propeller
 
 PROPELLER = load_propeller("apcsf_11x4.7")
 THRUST, SPEED, DENSITY = 1.2, 8.0, 1.225  # N, m/s, kg/m3
@@ -74,7 +74,7 @@ def main() -> None:
         heard.time, levels, f"A-weighted level of {STEP:g} s, dB re 20 µPa",
         {"heard from overhead": FLIGHT.miss_distance / SOUND_SPEED},
     ).savefig(output / "levels.png")  # fmt: skip
-    directivity_plots.hemisphere_map(
+    directivity.hemisphere_map(
         *hemisphere(found), f"OASPL at {FLIGHT.height:g} m, dB re 20 µPa; azimuth from the nose"
     ).savefig(output / "hemisphere.png")
     print(f"Levels and figures: {output}")

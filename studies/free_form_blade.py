@@ -27,11 +27,11 @@ import numpy as np
 import openmdao.api as om
 from low_noise_design import BASELINE
 
-from propmdao.acoustics.observers import arc
+from propmdao.acoustics.kinematics.observers import arc
 from propmdao.components import NoiseObjectiveComp, PropellerGroup
-from propmdao.fidelity import Fidelity
-from propmdao.naca_blade import with_naca_sections
-from propmdao.propeller import Propeller
+from propmdao.formats.naca_blade import with_naca_sections
+from propmdao.propeller.description import Propeller
+from propmdao.records.fidelity import Fidelity
 
 AT = np.array([0.15, 0.3, 0.5, 0.7, 0.85, 1.0])  # r/R of the control points
 MICROPHONES = [-75.0, -60.0, -45.0, -30.0, -15.0]  # deg, at the distance of the thesis' one

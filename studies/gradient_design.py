@@ -24,17 +24,18 @@ import low_noise_design as thesis
 import numpy as np
 import openmdao.api as om
 
-from propmdao import acoustic_plots, directivity_plots, optimisation_plots, plots
-from propmdao.acoustics.levels import level_db, level_dba, oaspl_db
-from propmdao.aerodynamics.section_laws import AIR_VISCOSITY
-from propmdao.analysis import Analysis, analyze
-from propmdao.comparison import Cell, Row, Rows, markdown, print_comparison, side_by_side
-from propmdao.components.gradient_search import Search, run_slsqp
+from propmdao.acoustics.levels.decibels import level_db, oaspl_db
+from propmdao.acoustics.levels.weighting import level_dba
+from propmdao.aerodynamics.sections.laws import AIR_VISCOSITY
+from propmdao.analysis.comparisons import Cell, Row, Rows, markdown, print_comparison, side_by_side
+from propmdao.analysis.self_noise import BANDS_HZ
+from propmdao.analysis.single_point import Analysis, analyze
+from propmdao.components.drivers.gradient_search import Search, run_slsqp
+from propmdao.components.drivers.search_history import read_history
 from propmdao.components.noise_objective_comp import soft_maximum_db
-from propmdao.components.search_history import read_history
-from propmdao.fidelity import Fidelity
-from propmdao.propeller import Propeller
-from propmdao.self_noise import BANDS_HZ
+from propmdao.figures import acoustic_plots, directivity, plots, searches
+from propmdao.propeller.description import Propeller
+from propmdao.records.fidelity import Fidelity
 
 COARSE = Fidelity(n_chordwise=4, n_spanwise=12, n_contour=21, n_surface_span=20, n_harmonics=4)
 TOLERANCE = 1e-4  # of a constraint in driver scaling
@@ -212,10 +213,10 @@ def draw(results: Results, output: Path) -> None:
     spectrum = acoustic_plots.third_octaves(BANDS_HZ, bands)
     spectrum.axes[0].set_xlim(left=500.0)  # nothing is drawn below
     for name, figure in (
-        ("history", optimisation_plots.history(runs, "objective, dB or dBA", TOLERANCE)),
+        ("history", searches.history(runs, "objective, dB or dBA", TOLERANCE)),
         ("blades", plots.blades(results.blades, [0.15, 0.5, 0.85])),
-        ("tones", directivity_plots.directivity(elevations, tones, label="tones")),
-        ("total", directivity_plots.directivity(elevations, total, label="A-weighted total")),
+        ("tones", directivity.directivity(elevations, tones, label="tones")),
+        ("total", directivity.directivity(elevations, total, label="A-weighted total")),
         ("broadband", spectrum),
     ):
         figure.savefig(output / f"{name}.png")

@@ -18,18 +18,18 @@ import numpy as np
 from rich.console import Console
 from rich.table import Table
 
-from propmdao import measurement_plots
-from propmdao.acoustics.formulation1a import tones
-from propmdao.acoustics.levels import spl_db
-from propmdao.acoustics.observers import point
-from propmdao.analysis import SOUND_SPEED, Analysis, analyze
-from propmdao.fidelity import Fidelity
+from propmdao.acoustics.kinematics.observers import point
+from propmdao.acoustics.levels.decibels import spl_db
+from propmdao.acoustics.sources.formulation1a import tones
+from propmdao.analysis.single_point import SOUND_SPEED, Analysis, analyze
+from propmdao.analysis.wind_tunnel import calibrated_twist_deg, read_wind_tunnel
+from propmdao.figures import comparisons
+from propmdao.formats.propellers import load_propeller
 from propmdao.geometry.blade import Blade
 from propmdao.geometry.meshes import blade_meshes, mesh_radii
 from propmdao.geometry.surface import surface_panels
-from propmdao.propeller import load_propeller
-from propmdao.records import PointLoads
-from propmdao.wind_tunnel import calibrated_twist_deg, read_wind_tunnel
+from propmdao.records.fidelity import Fidelity
+from propmdao.records.loads import PointLoads
 
 PROPELLER = load_propeller("apcsf_11x4.7")
 MEASURED = Path(__file__).parent / "measurements" / "hover_noise_apcsf_11x4.7.toml"
@@ -172,7 +172,7 @@ def main() -> None:
               f"torque {loads[1]:.4f} N m, measured {known[1]:.4f}")  # fmt: skip
     print(f"Measured levels are up to {off_power_law_db(heard):.1f} dB off a power of rpm.")
     names = [f"{rpm} rpm" for rpm in heard.rpm]
-    measurement_plots.tone_directivity(
+    comparisons.tone_directivity(
         ARC, dict(zip(names, heard.arc_db, strict=True)),
         heard.elevation_deg, dict(zip(names, heard.measured_db, strict=True)),
     ).savefig(output / "directivity.png")  # fmt: skip

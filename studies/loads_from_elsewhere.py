@@ -17,15 +17,16 @@ from rich import box
 from rich.console import Console
 from rich.table import Table
 
-from propmdao.acoustics.levels import oaspl_db, oaspl_dba, spl_db
-from propmdao.acoustics.motion import translation
-from propmdao.acoustics.moving_sources import compact_sections
-from propmdao.acoustics.observers import arc
-from propmdao.acoustics.periodic import rotor_tones
-from propmdao.acoustics.reception import Observers
-from propmdao.acoustics.rotors import Rotor
-from propmdao.records import PointLoads
-from propmdao.wopwop import write_case
+from propmdao.acoustics.kinematics.motion import translation
+from propmdao.acoustics.kinematics.observers import arc
+from propmdao.acoustics.kinematics.reception import Observers
+from propmdao.acoustics.levels.decibels import oaspl_db, spl_db
+from propmdao.acoustics.levels.weighting import oaspl_dba
+from propmdao.acoustics.sources.moving_sources import compact_sections
+from propmdao.acoustics.sources.periodic import rotor_tones
+from propmdao.acoustics.sources.rotors import Rotor
+from propmdao.formats.wopwop.write_case import write_case
+from propmdao.records.loads import PointLoads
 
 HERE = Path(__file__).parent
 COLUMNS = ("r_m", "length_m", "thrust_n_per_m", "drag_n_per_m")

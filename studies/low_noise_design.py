@@ -19,16 +19,17 @@ from pathlib import Path
 import numpy as np
 import openmdao.api as om
 
-from propmdao import plots
-from propmdao.acoustics.observers import arc
-from propmdao.analysis import Analysis, analyze
-from propmdao.comparison import ROWS, Cell, at_observer, print_comparison
+from propmdao.acoustics.kinematics.observers import arc
+from propmdao.analysis.comparisons import ROWS, Cell, at_observer, print_comparison
+from propmdao.analysis.single_point import Analysis, analyze
 from propmdao.components import DifferentialEvolutionDriver, PropellerGroup
 from propmdao.components.geometry_comp import blade_distributions
-from propmdao.fidelity import Fidelity
-from propmdao.geometry.airfoil import max_camber_for_design_lift
-from propmdao.naca_blade import with_naca_sections
-from propmdao.propeller import Propeller, load_propeller
+from propmdao.figures import plots
+from propmdao.formats.naca_blade import with_naca_sections
+from propmdao.formats.propellers import load_propeller
+from propmdao.propeller.airfoils.airfoil import max_camber_for_design_lift
+from propmdao.propeller.description import Propeller
+from propmdao.records.fidelity import Fidelity
 
 BASELINE = load_propeller("apcsf_11x4.7_thesis")
 START = dataclasses.replace(BASELINE, airfoils=[(1.0, "naca4409")])

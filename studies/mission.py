@@ -13,8 +13,8 @@ import numpy as np
 import openmdao.api as om
 
 from propmdao.components import PropellerGroup
-from propmdao.fidelity import Fidelity
-from propmdao.propeller import load_propeller
+from propmdao.formats.propellers import load_propeller
+from propmdao.records.fidelity import Fidelity
 
 MASS, WING_AREA, GRAVITY = 1.0, 0.25, 9.80665  # kg, m2, m/s2
 DRAG_AT_ZERO_LIFT, INDUCED_DRAG = 0.035, 0.05  # CD = CD0 + k CL^2

@@ -10,10 +10,11 @@ import argparse
 import numpy as np
 import openmdao.api as om
 
-from propmdao.acoustics.observers import arc
+from propmdao.acoustics.kinematics.observers import arc
 from propmdao.components import PropellerGroup
-from propmdao.fidelity import Fidelity
-from propmdao.propeller import Propeller, load_propeller
+from propmdao.formats.propellers import load_propeller
+from propmdao.propeller.description import Propeller
+from propmdao.records.fidelity import Fidelity
 
 SPEED = np.array([0.0, 8.0])  # m/s: hover, cruise
 THRUST = np.array([2.5, 1.2])  # N

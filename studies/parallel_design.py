@@ -24,11 +24,11 @@ from pathlib import Path
 
 import openmdao.api as om
 
-from propmdao.acoustics.observers import arc
+from propmdao.acoustics.kinematics.observers import arc
 from propmdao.components import DifferentialEvolutionDriver, PropellerGroup
-from propmdao.fidelity import Fidelity
-from propmdao.propeller import load_propeller
-from propmdao.worker_processes import start_workers, use_one_thread
+from propmdao.formats.propellers import load_propeller
+from propmdao.records.fidelity import Fidelity
+from propmdao.runtime.worker_processes import start_workers, use_one_thread
 
 PROPELLER = load_propeller("apcsf_11x4.7")
 STATIONS = [0.15, 0.4, 0.7, 1.0]  # r/R of the control points

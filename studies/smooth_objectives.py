@@ -25,9 +25,9 @@ import openmdao.api as om
 from numpy.typing import NDArray
 from scipy.ndimage import median_filter
 
-from propmdao import optimisation_plots
-from propmdao.comparison import Rows, markdown
-from propmdao.fidelity import Fidelity
+from propmdao.analysis.comparisons import Rows, markdown
+from propmdao.figures import searches
+from propmdao.records.fidelity import Fidelity
 
 Array = NDArray[np.float64]
 QUICK = Fidelity(n_chordwise=4, n_spanwise=12, n_contour=21, n_surface_span=20, n_harmonics=4)
@@ -189,7 +189,7 @@ def main() -> None:
         for number, line_values in enumerate(values):
             for at, row in zip(np.linspace(0.0, 1.0, options.points), line_values, strict=True):
                 writer.writerow([number, at, *row])
-    figure = optimisation_plots.line_scans(
+    figure = searches.line_scans(
         np.linspace(0.0, 1.0, options.points),
         {name: values[..., k] for k, name in enumerate(RESPONSES)},
         {name: label for name, (_, label) in RESPONSES.items()},

@@ -5,7 +5,7 @@ becomes the tip vortex, as another, each with the mean of the velocity that all 
 induce on it, and they contract with the mean radial velocity of the outer part. Sheets, circulation
 and the induced velocity of momentum theory are solved together by relaxation. That wake knows no
 law; beside it stand the thrust and the power of the prescribed wake of
-`propmdao.aerodynamics.wake`, which is a curve through what comes out here, and of which it is the
+`aerodynamics.wakes.helical`, which is a curve through what comes out here, and of which it is the
 evidence. Inviscid flow; two, three and four blades.
 """
 
@@ -18,14 +18,16 @@ import jax.numpy as jnp
 import numpy as np
 from aerodynamic_validation import show, write_csv
 
-from propmdao.aerodynamics import wake
 from propmdao.aerodynamics.coefficients import coefficients
-from propmdao.aerodynamics.lattice_loads import lattice_geometry, loads_with_wake
-from propmdao.aerodynamics.rings import BOUND_CORE, blade_influence, wake_influence
-from propmdao.aerodynamics.steady import WAKE_AGES, solve_steady
+from propmdao.aerodynamics.lattice.rings import BOUND_CORE, blade_influence, wake_influence
+from propmdao.aerodynamics.solutions.axial import WAKE_AGES, solve_steady
+from propmdao.aerodynamics.solutions.lattice_loads import lattice_geometry, loads_with_wake
+from propmdao.aerodynamics.vortices.cores import core_radius
+from propmdao.aerodynamics.wakes import ages, helical, momentum
+from propmdao.formats.propellers import load_propeller
 from propmdao.geometry.blade import Blade, span_interpolation
 from propmdao.geometry.lattice import lattice_nodes, lattice_span
-from propmdao.propeller import Propeller, load_propeller
+from propmdao.propeller.description import Propeller
 
 CASES = [(name, 2, J) for name in ("apcsf_11x4.7", "apce_10x7") for J in (0.0, 0.2, 0.4)]
 CASES += [("apcsf_11x4.7", n_blades, J) for n_blades in (3, 4) for J in (0.0, 0.2)]
@@ -56,12 +58,12 @@ def relaxed(propeller: Propeller, speed: float, steps: int = STEPS) -> dict[str,
     nodes = nodes_of(propeller)
     lattice = lattice_geometry(nodes, n_blades, radius)
     core, thick = (
-        wake.core_radius(jnp.asarray(WAKE_AGES), omega, AIR_VISCOSITY, of * radius)
+        core_radius(jnp.asarray(WAKE_AGES), omega, AIR_VISCOSITY, of * radius)
         for of in (BOUND_CORE, CORE)
     )
     trailing, ages, time = lattice.rings.corner[-1], jnp.asarray(WAKE_AGES), WAKE_AGES / omega
     r0 = np.hypot(*np.asarray(trailing[:, :2]).T)
-    outward = np.asarray(wake.outer_part(r0 / radius))
+    outward = np.asarray(helical.outer_part(r0 / radius))
     inside = (1.0 - outward) * (r0 > 0.35 * radius) * np.gradient(r0) * r0  # area, without the hub
 
     induced = float(solve_steady(nodes, n_blades, radius, omega, speed, DENSITY).induced_velocity)
@@ -69,11 +71,11 @@ def relaxed(propeller: Propeller, speed: float, steps: int = STEPS) -> dict[str,
     drift = np.stack([rigid, rigid, np.ones_like(time)])  # of outer, inner part, and contraction
     for _ in range(steps):
         axial = outward[:, None] * drift[0] + (1.0 - outward)[:, None] * drift[1]
-        sheets = wake.helices(trailing, ages, n_blades, axial, drift[2])
+        sheets = helical.helices(trailing, ages, n_blades, axial, drift[2])
         loads = _loads(lattice, sheets, core, omega, speed, induced, DENSITY, None)
         thrust, torque = n_blades * float(loads.thrust), n_blades * float(loads.torque)
         induced = float(
-            wake.momentum_induced_velocity(
+            momentum.momentum_induced_velocity(
                 thrust, speed, omega * radius, DENSITY, np.pi * radius**2
             )
         )

@@ -15,9 +15,9 @@ from typing import Any
 import pytest
 
 import propmdao
-from propmdao import cli
-from propmdao.catalog import airfoil_file, airfoil_names, catalog_names, propeller_file
-from propmdao.propeller import load_propeller
+from propmdao.commands import program
+from propmdao.formats.propellers import load_propeller
+from propmdao.propeller.catalog import airfoil_file, airfoil_names, catalog_names, propeller_file
 
 OPENMDAO_NAMES = {
     "openmdao_component": [
@@ -110,7 +110,7 @@ def test_openmdao_lists_the_components(distribution: metadata.Distribution) -> N
 def test_the_command_line_does_without_openmdao_and_matplotlib() -> None:
     # They take seconds to import and nothing on the command line needs them.
     code = (
-        "import sys, propmdao.cli as cli; cli.main(['list'])\n"
+        "import sys, propmdao.commands.program as cli; cli.main(['list'])\n"
         "assert not {'openmdao', 'matplotlib'} & set(sys.modules)"
     )
     subprocess.run([sys.executable, "-c", code], check=True, capture_output=True)
@@ -140,7 +140,7 @@ def test_command_lines_in_the_readme_parse(checkout: Path) -> None:
     assert commands
     for words in commands:
         if "--help" not in words:
-            cli.build_parser().parse_args(words[1:])
+            program.build_parser().parse_args(words[1:])
 
 
 def test_the_propeller_file_in_the_readme_can_be_read(checkout: Path, tmp_path: Path) -> None:

@@ -3,7 +3,7 @@
     python tools/generate_polars.py [FILE]
 
 The file records NeuralFoil's version and settings; the tables that ship are described by
-`propmdao.aerodynamics.polars.shipped.shipped_tables().settings`.
+`propmdao.aerodynamics.sections.polars.shipped.shipped_tables().settings`.
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ from __future__ import annotations
 import sys
 from pathlib import Path
 
-from propmdao.aerodynamics.polars.shipped import generate, read_tables
+from propmdao.aerodynamics.sections.polars.shipped import generate, read_tables
 
 DEFAULT = Path(__file__).parents[1] / "propmdao" / "catalog" / "polars" / "sections.npz"
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 import jax.numpy as jnp
 from jax import Array
 
-from propmdao._compile import compiled
-from propmdao.records import Scalar, record
+from propmdao.records.pytrees import Scalar, record
+from propmdao.runtime.compilation import compiled
 
 
 @record

@@ -12,12 +12,8 @@ import jax.numpy as jnp
 import numpy as np
 from jax import Array
 
-from propmdao._compile import compiled
-from propmdao.aerodynamics.lattice_loads import LatticeLoads
-from propmdao.aerodynamics.roots import at_root, empty
-from propmdao.aerodynamics.section_laws import ViscousSections
-from propmdao.aerodynamics.solution import SteadySolution
-from propmdao.aerodynamics.steady import (
+from propmdao.aerodynamics.sections.laws import ViscousSections
+from propmdao.aerodynamics.solutions.axial import (
     Flow,
     flow_at,
     induced_velocity,
@@ -25,7 +21,11 @@ from propmdao.aerodynamics.steady import (
     solve_steady,
     steady_solution,
 )
-from propmdao.records import Scalar
+from propmdao.aerodynamics.solutions.lattice_loads import LatticeLoads
+from propmdao.aerodynamics.solutions.result import SteadySolution
+from propmdao.aerodynamics.solutions.roots import at_root, empty
+from propmdao.records.pytrees import Scalar
+from propmdao.runtime.compilation import compiled
 
 _TOLERANCE = 1.0e-10
 _MAX_EVALUATIONS = 60

@@ -1,1 +1,3 @@
-"""Blade geometry: sections, lattice and surface mesh."""
+"""The blade as arrays, and the two meshes of it."""
+
+import propmdao.runtime.jax_setup  # noqa: F401 - before any array is made

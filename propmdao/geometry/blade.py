@@ -8,9 +8,9 @@ import numpy as np
 import numpy.typing as npt
 from scipy.interpolate import CubicSpline
 
-from propmdao.geometry.airfoil import DESIGN_LIFT_WEIGHTS, naca4_camber_line
-from propmdao.propeller import Propeller
-from propmdao.records import record
+from propmdao.propeller.airfoils.airfoil import DESIGN_LIFT_WEIGHTS, naca4_camber_line
+from propmdao.propeller.description import Propeller
+from propmdao.records.pytrees import record
 
 
 @record
@@ -30,7 +30,7 @@ class Blade:
         Maximum thickness and maximum camber over chord.
     camber_shape, thickness_shape : (n_stations, n_chord) arrays
         Camber line and full thickness scaled to a maximum of 1, on
-        `propmdao.geometry.airfoil.CHORD_FRACTION`. Both are laid off perpendicular to the chord.
+        `airfoils.airfoil.CHORD_FRACTION`. Both are laid off perpendicular to the chord.
     """
 
     radius: jax.Array
@@ -152,7 +152,7 @@ def design_lift_coefficient(camber_shape: npt.ArrayLike | jax.Array) -> jax.Arra
     Parameters
     ----------
     camber_shape : (..., n_chord) array
-        Camber lines scaled to a maximum of 1, on `propmdao.geometry.airfoil.CHORD_FRACTION`.
+        Camber lines scaled to a maximum of 1, on `airfoils.airfoil.CHORD_FRACTION`.
 
     Returns
     -------

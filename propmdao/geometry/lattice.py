@@ -7,9 +7,9 @@ import jax.numpy as jnp
 import numpy as np
 import numpy.typing as npt
 
-from propmdao.geometry.airfoil import chord_interpolation
 from propmdao.geometry.blade import Blade, SpanInterpolation
 from propmdao.geometry.section import place_sections, section_shape
+from propmdao.propeller.airfoils.airfoil import chord_interpolation
 
 
 def lattice_span(root_r_over_R: float, n_spanwise: int) -> npt.NDArray[np.float64]:

@@ -11,10 +11,10 @@ from jax import Array
 from propmdao.geometry.blade import Blade, SpanInterpolation, span_interpolation
 from propmdao.geometry.lattice import lattice_nodes, lattice_span
 from propmdao.geometry.surface import surface_nodes, surface_span
-from propmdao.records import record
+from propmdao.records.pytrees import record
 
 if TYPE_CHECKING:
-    from propmdao.propeller import Propeller
+    from propmdao.propeller.description import Propeller
 
 
 @record

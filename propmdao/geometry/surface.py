@@ -7,27 +7,11 @@ import jax.numpy as jnp
 import numpy as np
 import numpy.typing as npt
 
-from propmdao.geometry.airfoil import chord_interpolation
 from propmdao.geometry.blade import Blade, SpanInterpolation
 from propmdao.geometry.lattice import lattice_span
 from propmdao.geometry.section import place_sections, section_shape
-from propmdao.records import record
-
-
-@record
-class Panels:
-    """Flat panels of a closed surface.
-
-    Attributes
-    ----------
-    center : (n, 3) array
-        Mean of the corners, blade frame at azimuth 0 [m].
-    vector_area : (n, 3) array
-        Area times the outward normal [m^2]; they sum to zero.
-    """
-
-    center: jax.Array
-    vector_area: jax.Array
+from propmdao.propeller.airfoils.airfoil import chord_interpolation
+from propmdao.records.panels import Panels
 
 
 def surface_span(root_r_over_R: float, n_span: int) -> npt.NDArray[np.float64]:

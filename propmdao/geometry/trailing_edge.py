@@ -5,8 +5,8 @@ from __future__ import annotations
 import jax
 import jax.numpy as jnp
 
-from propmdao.geometry.airfoil import CHORD_FRACTION
 from propmdao.geometry.blade import Blade, SpanInterpolation
+from propmdao.propeller.airfoils.airfoil import CHORD_FRACTION
 
 
 def trailing_edge(blade: Blade, span: SpanInterpolation) -> tuple[jax.Array, jax.Array]:

@@ -9,11 +9,13 @@ import jax.numpy as jnp
 import numpy as np
 import pytest
 
-from propmdao.acoustics import Tones, tones
+from propmdao.acoustics.signals import Tones
+from propmdao.acoustics.sources.formulation1a import tones
+from propmdao.formats.propellers import load_propeller
 from propmdao.geometry.blade import Blade, span_interpolation
-from propmdao.geometry.surface import Panels, surface_nodes, surface_panels, surface_span
-from propmdao.propeller import load_propeller
-from propmdao.records import PointLoads
+from propmdao.geometry.surface import surface_nodes, surface_panels, surface_span
+from propmdao.records.loads import PointLoads
+from propmdao.records.panels import Panels
 
 
 @dataclasses.dataclass(frozen=True)

@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
+from propmdao.formats.propellers import load_propeller
 from propmdao.geometry.blade import Blade, span_interpolation
 from propmdao.geometry.lattice import lattice_nodes, lattice_span
-from propmdao.propeller import load_propeller
 
 RPM = np.pi / 30.0
 

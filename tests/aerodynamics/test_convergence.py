@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from propmdao.aerodynamics.steady import WAKE_AGES, solve_steady
-from propmdao.aerodynamics.wake import wake_azimuths
+from propmdao.aerodynamics.solutions.axial import WAKE_AGES, solve_steady
+from propmdao.aerodynamics.wakes.ages import wake_azimuths
 
 OMEGA, SPEED = 440.0, 8.0
 DEG = np.pi / 180.0

@@ -3,10 +3,11 @@
 import jax.numpy as jnp
 import numpy as np
 
-from propmdao.aerodynamics.lattice_loads import lattice_geometry
-from propmdao.aerodynamics.rings import Rings, blade_influence, wake_influence
-from propmdao.aerodynamics.steady import WAKE_AGES, Flow, loads_at
-from propmdao.aerodynamics.wake import core_radius, helical_wake
+from propmdao.aerodynamics.lattice.rings import Rings, blade_influence, wake_influence
+from propmdao.aerodynamics.solutions.axial import WAKE_AGES, Flow, loads_at
+from propmdao.aerodynamics.solutions.lattice_loads import lattice_geometry
+from propmdao.aerodynamics.vortices.cores import core_radius
+from propmdao.aerodynamics.wakes.helical import helical_wake
 
 B = 3
 OMEGA, SPEED, INDUCED, DENSITY = 420.0, 5.0, 3.0, 1.2

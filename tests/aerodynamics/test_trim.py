@@ -4,7 +4,7 @@ import jax
 import numpy as np
 import pytest
 
-from propmdao.aerodynamics.steady import solve_steady
+from propmdao.aerodynamics.solutions.axial import solve_steady
 from propmdao.aerodynamics.trim import (
     TrimError,
     rotation_speed_by_interpolation,

@@ -7,9 +7,9 @@ import jax.numpy as jnp
 import numpy as np
 import pytest
 
-from propmdao.aerodynamics.lattice_loads import lattice_geometry, loads_with_wake
-from propmdao.geometry.airfoil import CHORD_FRACTION, naca4_camber_line
+from propmdao.aerodynamics.solutions.lattice_loads import lattice_geometry, loads_with_wake
 from propmdao.geometry.lattice import lattice_chord_fraction
+from propmdao.propeller.airfoils.airfoil import CHORD_FRACTION, naca4_camber_line
 
 SPEED = 10.0
 DENSITY = 1.2

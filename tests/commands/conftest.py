@@ -10,11 +10,11 @@ from typing import Any
 
 import pytest
 
-from propmdao.cli import main
+from propmdao.commands.program import main
 
 
 class Recorder:
-    """In place of `propmdao.analysis.analyze`: keeps what it was asked, answers at once."""
+    """In place of `propmdao.analyze`: keeps what it was asked, answers at once."""
 
     def __init__(self) -> None:
         self.calls: list[dict[str, Any]] = []
@@ -49,7 +49,7 @@ class Recorder:
 def recorder(monkeypatch: pytest.MonkeyPatch) -> Recorder:
     recorder = Recorder()
     module = types.SimpleNamespace(analyze=recorder.analyze)
-    monkeypatch.setitem(sys.modules, "propmdao.analysis", module)
+    monkeypatch.setitem(sys.modules, "propmdao.analysis.single_point", module)
     return recorder
 
 

@@ -13,8 +13,8 @@ from typing import Any
 
 import pytest
 
-from propmdao.acoustics.surroundings import Surroundings
-from propmdao.cli import main
+from propmdao.commands.program import main
+from propmdao.records.listening import Surroundings
 
 PROPELLER = "apcsf_11x4.7"
 
@@ -23,7 +23,7 @@ def run(*arguments: str, **environment: str) -> subprocess.CompletedProcess[str]
     """The installed command in a process of its own, without a display."""
     surroundings = {key: value for key, value in os.environ.items() if key != "DISPLAY"}
     return subprocess.run(
-        [sys.executable, "-m", "propmdao.cli", *arguments],
+        [sys.executable, "-m", "propmdao.commands.program", *arguments],
         env=surroundings | environment,
         capture_output=True,
         text=True,

@@ -11,8 +11,8 @@ import types
 import pytest
 
 import propmdao
-from propmdao.catalog import catalog_names
-from propmdao.cli import main
+from propmdao.commands.program import main
+from propmdao.propeller.catalog import catalog_names
 
 PROPELLER = "apcsf_11x4.7"
 
@@ -38,7 +38,7 @@ def test_interrupt_ends_quietly(
         raise KeyboardInterrupt
 
     module = types.SimpleNamespace(analyze=interrupted)
-    monkeypatch.setitem(sys.modules, "propmdao.analysis", module)
+    monkeypatch.setitem(sys.modules, "propmdao.analysis.single_point", module)
     assert main(["analyze", PROPELLER, "--rpm", "4000"]) == 130
     output = capsys.readouterr()
     assert output.out == output.err == ""
@@ -50,7 +50,7 @@ def test_a_closed_pipe_ends_quietly(form: list[str]) -> None:
     os.close(reader)
     with os.fdopen(writer, "w") as pipe:
         result = subprocess.run(
-            [sys.executable, "-m", "propmdao.cli", "list", *form],
+            [sys.executable, "-m", "propmdao.commands.program", "list", *form],
             stdout=pipe,
             stderr=subprocess.PIPE,
             text=True,
@@ -61,7 +61,7 @@ def test_a_closed_pipe_ends_quietly(form: list[str]) -> None:
 
 
 def test_version_is_that_of_the_package() -> None:
-    command = [sys.executable, "-m", "propmdao.cli", "--version"]
+    command = [sys.executable, "-m", "propmdao.commands.program", "--version"]
     version = subprocess.run(command, capture_output=True, text=True, check=False)
     assert (version.returncode, version.stderr) == (0, "")
     assert version.stdout == f"propmdao {propmdao.__version__}\n"

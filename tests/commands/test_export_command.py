@@ -9,10 +9,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from propmdao.cli import main
-from propmdao.geometry.coordinates import read_coordinates
-from propmdao.propeller import load_propeller
-from propmdao.wopwop.cases import read_cases
+from propmdao.commands.program import main
+from propmdao.formats.propellers import load_propeller
+from propmdao.formats.wopwop.cases import read_cases
+from propmdao.propeller.airfoils.coordinates import read_coordinates
 
 PROPELLER = "apcsf_11x4.7"
 

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from propmdao.cli import main
+from propmdao.commands.program import main
 
 PROPELLER = "apcsf_11x4.7"
 FLIGHT = "--rpm 4200 --speed 8 --height 20 --duration 20 --trip heavy --json".split()

@@ -7,16 +7,16 @@ import argparse
 import numpy as np
 import pytest
 
-from propmdao.acoustics.observers import hemisphere, point
-from propmdao.acoustics.propagation import Air
-from propmdao.acoustics.surroundings import Surroundings
-from propmdao.command_options import take_negative_ranges
-from propmdao.observer_options import (
+from propmdao.acoustics.kinematics.observers import hemisphere, point
+from propmdao.commands.observer_options import (
     add_observers,
     add_surroundings,
     observers_of,
     surroundings_of,
 )
+from propmdao.commands.options import take_negative_ranges
+from propmdao.records.air import Air
+from propmdao.records.listening import Surroundings
 
 
 def parse(arguments: str) -> argparse.Namespace:

@@ -11,11 +11,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from propmdao.acoustics.reception import Observers
-from propmdao.acoustics.rotors import Rotor, equally_spaced
-from propmdao.cli import main
-from propmdao.records import PointLoads
-from propmdao.wopwop import read_namelists, write_case, write_namelists
+from propmdao.acoustics.kinematics.reception import Observers
+from propmdao.acoustics.sources.rotors import Rotor, equally_spaced
+from propmdao.commands.program import main
+from propmdao.formats.wopwop.namelists import read_namelists, write_namelists
+from propmdao.formats.wopwop.write_case import write_case
+from propmdao.records.loads import PointLoads
 
 OMEGA = 400.0
 

@@ -5,10 +5,10 @@ import openmdao.api as om
 import pytest
 from numpy.testing import assert_allclose
 
-from propmdao.aerodynamics.polars import polars_for
+from propmdao.aerodynamics.sections.polars.propeller_polars import polars_for
 from propmdao.components import DifferentialEvolutionDriver, GeometryComp
-from propmdao.fidelity import Fidelity
-from propmdao.propeller import load_propeller
+from propmdao.formats.propellers import load_propeller
+from propmdao.records.fidelity import Fidelity
 
 
 class Recorded(om.ExplicitComponent):

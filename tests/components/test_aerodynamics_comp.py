@@ -5,9 +5,9 @@ import openmdao.api as om
 import pytest
 from numpy.testing import assert_allclose
 
-from propmdao.aerodynamics.section_laws import viscous_sections
-from propmdao.aerodynamics.steady import solve_steady
-from propmdao.aerodynamics.strips import strip_radii
+from propmdao.aerodynamics.lattice.strips import strip_radii
+from propmdao.aerodynamics.sections.laws import viscous_sections
+from propmdao.aerodynamics.solutions.axial import solve_steady
 from propmdao.components import AerodynamicsComp, RotationSpeedComp, TrimmedAerodynamicsComp
 from propmdao.geometry.blade import Blade, span_interpolation
 

@@ -5,10 +5,10 @@ import openmdao.api as om
 import pytest
 from numpy.testing import assert_allclose
 
-from propmdao.acoustics.levels import a_weighting
-from propmdao.acoustics.observers import arc
+from propmdao.acoustics.kinematics.observers import arc
+from propmdao.acoustics.levels.weighting import a_weighting
+from propmdao.analysis.self_noise import BANDS_HZ
 from propmdao.components import BroadbandComp
-from propmdao.self_noise import BANDS_HZ
 
 OBSERVERS = arc(1.9, [-45.0, -20.0])
 

@@ -7,7 +7,7 @@ import openmdao.api as om
 import pytest
 from numpy.testing import assert_allclose
 
-from propmdao.acoustics.observers import arc
+from propmdao.acoustics.kinematics.observers import arc
 from propmdao.components import (
     AerodynamicsComp,
     PropellerGroup,

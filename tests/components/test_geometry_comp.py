@@ -9,8 +9,8 @@ import pytest
 from numpy.testing import assert_allclose
 from openmdao.utils.assert_utils import assert_check_partials
 
-from propmdao.aerodynamics.polars import blade_tables
-from propmdao.aerodynamics.strips import strip_radii
+from propmdao.aerodynamics.lattice.strips import strip_radii
+from propmdao.aerodynamics.sections.polars.family import blade_tables
 from propmdao.components import GeometryComp
 from propmdao.geometry.blade import Blade, span_interpolation
 from propmdao.geometry.lattice import lattice_nodes, lattice_span

@@ -6,7 +6,7 @@ import pytest
 from numpy.testing import assert_allclose
 from openmdao.utils.assert_utils import assert_check_partials
 
-from propmdao.acoustics.levels import energy_sum_db
+from propmdao.acoustics.levels.decibels import energy_sum_db
 from propmdao.components import NoiseObjectiveComp
 
 LEVELS = np.array([52.0, 58.5, 40.0, 57.0])

@@ -6,8 +6,8 @@ import pytest
 from numpy.testing import assert_allclose
 from openmdao.utils.assert_utils import assert_check_partials
 
-from propmdao.components.jax_component import FunctionDerivatives
-from propmdao.components.operating_points import STATIC, OperatingPointsComp
+from propmdao.components.bases.jax_component import FunctionDerivatives
+from propmdao.components.bases.nodes_comp import STATIC, OperatingPointsComp
 
 
 def _lift(inputs, constants, static):

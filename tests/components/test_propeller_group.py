@@ -10,8 +10,8 @@ import openmdao.api as om
 import pytest
 from numpy.testing import assert_allclose
 
-from propmdao.acoustics.observers import arc
-from propmdao.analysis import analyze
+from propmdao.acoustics.kinematics.observers import arc
+from propmdao.analysis.single_point import analyze
 from propmdao.components import DifferentialEvolutionDriver, PropellerGroup
 
 ELEVATIONS = [-45.0, 0.0]

@@ -5,7 +5,7 @@ import openmdao.api as om
 import pytest
 from numpy.testing import assert_allclose
 
-from propmdao.acoustics.observers import arc
+from propmdao.acoustics.kinematics.observers import arc
 from propmdao.components import PropellerGroup
 
 OBSERVERS = arc(1.905, [-45.0, 0.0])

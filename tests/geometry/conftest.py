@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from propmdao.geometry.blade import Blade
-from propmdao.propeller import Propeller
+from propmdao.propeller.description import Propeller
 
 R_OVER_R = np.array([0.2, 0.4, 0.6, 0.8, 1.0])
 

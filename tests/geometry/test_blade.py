@@ -8,10 +8,10 @@ import jax
 import numpy as np
 import pytest
 
-from propmdao.geometry.airfoil import CHORD_FRACTION, naca4_camber_line
-from propmdao.geometry.airfoil_library import find_airfoil
 from propmdao.geometry.blade import Blade, design_lift_coefficient, span_interpolation
-from propmdao.propeller import Propeller
+from propmdao.propeller.airfoils.airfoil import CHORD_FRACTION, naca4_camber_line
+from propmdao.propeller.airfoils.library import find_airfoil
+from propmdao.propeller.description import Propeller
 
 R_OVER_R = np.array([0.2, 0.45, 0.7, 0.9, 1.0])
 

@@ -11,7 +11,7 @@ import pytest
 
 from propmdao.geometry.blade import Blade, span_interpolation
 from propmdao.geometry.lattice import lattice_chord_fraction, lattice_nodes, lattice_span
-from propmdao.propeller import Propeller
+from propmdao.propeller.description import Propeller
 
 R_OVER_R = np.array([0.2, 0.4, 0.6, 0.8, 1.0])
 SPAN = span_interpolation(R_OVER_R, lattice_span(0.2, 12))

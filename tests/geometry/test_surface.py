@@ -9,10 +9,11 @@ import jax
 import numpy as np
 import pytest
 
-from propmdao.geometry.airfoil import naca4_from_name
 from propmdao.geometry.blade import Blade, span_interpolation
-from propmdao.geometry.surface import Panels, surface_nodes, surface_panels, surface_span
-from propmdao.propeller import Propeller
+from propmdao.geometry.surface import surface_nodes, surface_panels, surface_span
+from propmdao.propeller.airfoils.airfoil import naca4_from_name
+from propmdao.propeller.description import Propeller
+from propmdao.records.panels import Panels
 
 R_OVER_R = np.array([0.2, 0.4, 0.6, 0.8, 1.0])
 

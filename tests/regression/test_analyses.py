@@ -15,12 +15,12 @@ from typing import Any
 import numpy as np
 import pytest
 
-from propmdao.acoustics.propagation import Air
-from propmdao.acoustics.surroundings import Surroundings
-from propmdao.analysis import analyze
-from propmdao.analysis_result import Analysis
-from propmdao.fidelity import Fidelity
-from propmdao.propeller import load_propeller
+from propmdao.analysis.results import Analysis
+from propmdao.analysis.single_point import analyze
+from propmdao.formats.propellers import load_propeller
+from propmdao.records.air import Air
+from propmdao.records.fidelity import Fidelity
+from propmdao.records.listening import Surroundings
 
 FILE = Path(__file__).with_name("analyses.json")
 COARSE = Fidelity(n_chordwise=4, n_spanwise=8, n_contour=21, n_surface_span=16, n_harmonics=5)

@@ -10,7 +10,7 @@ from types import ModuleType
 
 import pytest
 
-from propmdao.fidelity import Fidelity
+from propmdao.records.fidelity import Fidelity
 
 
 @pytest.fixture(scope="module")

@@ -10,9 +10,9 @@ import pytest
 
 pytest.importorskip("matplotlib")
 
-from propmdao.analysis import analyze
-from propmdao.propeller import load_propeller
-from propmdao.wind_tunnel import calibrated_twist_deg
+from propmdao.analysis.single_point import analyze
+from propmdao.analysis.wind_tunnel import calibrated_twist_deg
+from propmdao.formats.propellers import load_propeller
 
 CASE = "apcsf_11x4.7"
 

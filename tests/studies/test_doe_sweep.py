@@ -14,7 +14,7 @@ from numpy.testing import assert_allclose
 pytest.importorskip("matplotlib", reason="matplotlib, an extra, is not installed")
 pytest.importorskip("pydoe", reason="pydoe, an extra, is not installed")
 
-from propmdao.fidelity import Fidelity
+from propmdao.records.fidelity import Fidelity
 
 
 @pytest.fixture(scope="module")

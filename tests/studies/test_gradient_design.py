@@ -16,9 +16,9 @@ from numpy.testing import assert_allclose
 
 pytest.importorskip("matplotlib", reason="matplotlib, an extra, is not installed")
 
-from propmdao.components.gradient_search import Search
-from propmdao.components.search_history import SearchHistory
-from propmdao.fidelity import Fidelity
+from propmdao.components.drivers.gradient_search import Search
+from propmdao.components.drivers.search_history import SearchHistory
+from propmdao.records.fidelity import Fidelity
 
 
 @pytest.fixture(scope="module")

@@ -11,11 +11,11 @@ import jax.numpy as jnp
 import numpy as np
 import pytest
 
-from propmdao.acoustics.observers import arc
-from propmdao.acoustics.reception import Observers
-from propmdao.acoustics.rotors import rotor_histories
-from propmdao.wopwop import run_case
-from propmdao.wopwop_command import levels
+from propmdao.acoustics.kinematics.observers import arc
+from propmdao.acoustics.kinematics.reception import Observers
+from propmdao.acoustics.sources.rotors import rotor_histories
+from propmdao.analysis.foreign_case import run_case
+from propmdao.commands.wopwop_command import levels
 
 RHO, C, DISTANCE = 1.226, 340.0, 30.48
 

@@ -18,11 +18,12 @@ from numpy.testing import assert_allclose
 
 pytest.importorskip("matplotlib")
 
-from propmdao.analysis import analyze
-from propmdao.comparison import ROWS, at_observer
+from propmdao.analysis.comparisons import ROWS, at_observer
+from propmdao.analysis.single_point import analyze
 from propmdao.components import AcousticsComp
-from propmdao.fidelity import Fidelity
-from propmdao.propeller import Propeller, load_propeller
+from propmdao.formats.propellers import load_propeller
+from propmdao.propeller.description import Propeller
+from propmdao.records.fidelity import Fidelity
 
 Analysed = Callable[..., dict[str, float]]
 # Table 4.10 of the thesis, as printed: APC 11x4.7 SF, optimized, difference.

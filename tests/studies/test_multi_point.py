@@ -8,7 +8,7 @@ from types import ModuleType
 import pytest
 from numpy.testing import assert_allclose
 
-from propmdao.propeller import load_propeller
+from propmdao.formats.propellers import load_propeller
 
 
 @pytest.fixture(scope="module")

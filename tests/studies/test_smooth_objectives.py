@@ -11,7 +11,7 @@ from numpy.testing import assert_allclose
 
 pytest.importorskip("matplotlib", reason="matplotlib, an extra, is not installed")
 
-from propmdao.fidelity import Fidelity
+from propmdao.records.fidelity import Fidelity
 
 AT = 0.37
 

@@ -13,8 +13,8 @@ import pytest
 
 pytest.importorskip("matplotlib", reason="matplotlib, an extra, is not installed")
 
-from propmdao.components.gradient_search import Search
-from propmdao.components.search_history import SearchHistory
+from propmdao.components.drivers.gradient_search import Search
+from propmdao.components.drivers.search_history import SearchHistory
 
 NAMES = ("update_tables", "gradient_tables")
 

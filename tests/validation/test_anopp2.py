@@ -13,9 +13,10 @@ import jax.numpy as jnp
 import numpy as np
 import pytest
 
-from propmdao.acoustics import Tones, tones
-from propmdao.geometry.surface import Panels
-from propmdao.records import PointLoads
+from propmdao.acoustics.signals import Tones
+from propmdao.acoustics.sources.formulation1a import tones
+from propmdao.records.loads import PointLoads
+from propmdao.records.panels import Panels
 
 ELEVATION = np.radians(-45.0)
 OBSERVER = 30.48 * np.array([[0.0, -np.cos(ELEVATION), np.sin(ELEVATION)]])  # blade 1 along +x

@@ -10,12 +10,12 @@ import jax.numpy as jnp
 import numpy as np
 import pytest
 
-from propmdao.acoustics.flyover import flyover_histories
-from propmdao.acoustics.motion import translation
-from propmdao.acoustics.moving_sources import compact_sections
-from propmdao.acoustics.reception import Observers
-from propmdao.acoustics.rotors import Rotor, rotor_histories
-from propmdao.records import PointLoads
+from propmdao.acoustics.kinematics.motion import translation
+from propmdao.acoustics.kinematics.reception import Observers
+from propmdao.acoustics.sources.flyover import flyover_histories
+from propmdao.acoustics.sources.moving_sources import compact_sections
+from propmdao.acoustics.sources.rotors import Rotor, rotor_histories
+from propmdao.records.loads import PointLoads
 
 DENSITY, SOUND_SPEED, FLIGHT = 1.226, 340.0, np.array([0.0, 0.0, 5.0])
 

@@ -12,14 +12,12 @@ import jax.numpy as jnp
 import numpy as np
 import pytest
 
-from propmdao.acoustics.broadband import (
-    Section,
-    boundary_layer,
-    radiation,
-    trailing_edge_noise,
-)
+from propmdao.acoustics.broadband.boundary_layer import boundary_layer
+from propmdao.acoustics.broadband.directivity import radiation
+from propmdao.acoustics.broadband.section import Section
+from propmdao.acoustics.broadband.self_noise import trailing_edge_noise
 from propmdao.acoustics.broadband.turbulent_spectra import amplitude_k1, shape_a, shape_b
-from propmdao.acoustics.levels import level_db
+from propmdao.acoustics.levels.decibels import level_db
 
 NOMINAL = np.array(
     [m * 10**k for k in range(2, 5) for m in (1, 1.25, 1.6, 2, 2.5, 3.15, 4, 5, 6.3, 8)]

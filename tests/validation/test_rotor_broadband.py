@@ -13,16 +13,17 @@ import dataclasses
 import numpy as np
 import pytest
 
-from propmdao.acoustics import arc
-from propmdao.acoustics.broadband import rotor_self_noise, third_octave_centers
-from propmdao.acoustics.levels import level_db
-from propmdao.aerodynamics.section_laws import AIR_VISCOSITY
-from propmdao.aerodynamics.strips import strip_radii
-from propmdao.analysis import SOUND_SPEED, analyze
-from propmdao.fidelity import Fidelity
+from propmdao.acoustics.broadband.rotor import rotor_self_noise
+from propmdao.acoustics.broadband.self_noise import third_octave_centers
+from propmdao.acoustics.kinematics.observers import arc
+from propmdao.acoustics.levels.decibels import level_db
+from propmdao.aerodynamics.lattice.strips import strip_radii
+from propmdao.aerodynamics.sections.laws import AIR_VISCOSITY
+from propmdao.analysis.self_noise import BANDS_HZ, strip_flow
+from propmdao.analysis.single_point import SOUND_SPEED, analyze
+from propmdao.formats.propellers import load_propeller
 from propmdao.geometry.blade import Blade, span_interpolation
-from propmdao.propeller import load_propeller
-from propmdao.self_noise import BANDS_HZ, strip_flow
+from propmdao.records.fidelity import Fidelity
 
 DENSITY, RPM, DISTANCE = 1.18, 4200.0, 1.905
 ELEVATIONS = (-45.0, -22.5)

@@ -14,15 +14,13 @@ import jax.numpy as jnp
 import numpy as np
 import pytest
 
-from propmdao.aerodynamics.polars import (
-    polars_for,
-    read_polar,
-    section_coefficients,
-    section_tables,
-)
-from propmdao.aerodynamics.polars.user_table import PolarError
-from propmdao.geometry.airfoil_library import find_airfoil
-from propmdao.propeller import Propeller
+from propmdao.aerodynamics.sections.polars.family import section_tables
+from propmdao.aerodynamics.sections.polars.propeller_polars import polars_for
+from propmdao.aerodynamics.sections.polars.table import section_coefficients
+from propmdao.aerodynamics.sections.polars.user_table import PolarError
+from propmdao.formats.polars import read_polar
+from propmdao.propeller.airfoils.library import find_airfoil
+from propmdao.propeller.description import Propeller
 
 SECTIONS = {"e63": "E63_T1_Re*", "clarky": "CLARK_Y_AIRFOIL_T1_Re*"}
 #: Angles within -4..8 deg at most; one size compiles once.

@@ -9,9 +9,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from propmdao.analysis import analyze
-from propmdao.propeller import load_propeller
-from propmdao.wind_tunnel import read_wind_tunnel
+from propmdao.analysis.single_point import analyze
+from propmdao.analysis.wind_tunnel import read_wind_tunnel
+from propmdao.formats.propellers import load_propeller
 
 pytestmark = pytest.mark.validation
 

@@ -14,13 +14,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from propmdao.propeller import load_propeller
-from propmdao.wind_tunnel import calibrated_twist_deg, computed, errors, read_wind_tunnel
+from propmdao.analysis.wind_tunnel import calibrated_twist_deg, computed, errors, read_wind_tunnel
+from propmdao.formats.propellers import load_propeller
 
 pytestmark = [
     pytest.mark.validation,
     # The electric propeller's root is thicker than the polars reach.
-    pytest.mark.filterwarnings("ignore::propmdao.aerodynamics.polars.PolarRangeWarning"),
+    pytest.mark.filterwarnings("ignore::propmdao.aerodynamics.sections.polars.PolarRangeWarning"),
 ]
 
 MEASURED = Path(__file__).parents[2] / "studies" / "measurements"

@@ -13,7 +13,7 @@ from jax import Array
 from jax.typing import ArrayLike
 
 from propmdao.acoustics.broadband.smooth import ramp, smooth_abs
-from propmdao.records import record
+from propmdao.records.pytrees import record
 
 #: How the boundary layer is tripped.
 Trip = Literal["none", "light", "heavy"]

@@ -6,7 +6,7 @@ import jax.numpy as jnp
 from jax import Array
 from jax.typing import ArrayLike
 
-from propmdao.records import record
+from propmdao.records.pytrees import record
 
 _CONVECTION = 0.8  # eddies convect at this share of the flow's Mach number
 _ON_THE_EDGE = 1e-12  # of the squared distance: an observer straight ahead has no angle phi

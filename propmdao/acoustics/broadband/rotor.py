@@ -15,7 +15,6 @@ import numpy as np
 from jax import Array
 from jax.typing import ArrayLike
 
-from propmdao._compile import compiled
 from propmdao.acoustics.broadband.boundary_layer import BoundaryLayer, Trip, boundary_layer
 from propmdao.acoustics.broadband.directivity import radiation
 from propmdao.acoustics.broadband.section import Section
@@ -25,7 +24,8 @@ from propmdao.acoustics.broadband.self_noise import (
     tip_noise,
     trailing_edge_noise,
 )
-from propmdao.records import record
+from propmdao.records.pytrees import record
+from propmdao.runtime.compilation import compiled
 
 
 @record

@@ -20,7 +20,7 @@ from propmdao.acoustics.broadband.boundary_layer import (
 )
 from propmdao.acoustics.broadband.shedding_spectra import BluntCurve
 from propmdao.acoustics.broadband.smooth import smooth_step
-from propmdao.records import record
+from propmdao.records.pytrees import record
 
 _STALL = 1.0  # half width of the change from attached to separated flow [deg]
 _SHARP = 1e-9  # trailing-edge thickness over chord that a logarithm can take

@@ -31,8 +31,8 @@ from propmdao.acoustics.broadband.section import (
     turbulent_strip,
 )
 from propmdao.acoustics.broadband.smooth import ramp
-from propmdao.acoustics.levels import REFERENCE_PRESSURE
-from propmdao.records import record
+from propmdao.acoustics.levels.decibels import REFERENCE_PRESSURE
+from propmdao.records.pytrees import record
 
 #: Shape of the blade tip seen from above the blade.
 Tip = Literal["rounded", "square"]

@@ -8,7 +8,8 @@ import jax.numpy as jnp
 import numpy as np
 import pytest
 
-from propmdao.acoustics.broadband import Section, StripFlow
+from propmdao.acoustics.broadband.rotor import StripFlow
+from propmdao.acoustics.broadband.section import Section
 
 
 @pytest.fixture(scope="session")

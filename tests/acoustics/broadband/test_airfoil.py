@@ -10,14 +10,14 @@ import numpy as np
 import pytest
 from jax.test_util import check_grads
 
-from propmdao.acoustics.broadband import (
-    boundary_layer,
-    radiation,
+from propmdao.acoustics.broadband.boundary_layer import boundary_layer
+from propmdao.acoustics.broadband.directivity import radiation
+from propmdao.acoustics.broadband.self_noise import (
     third_octave_centers,
     tip_noise,
     trailing_edge_noise,
 )
-from propmdao.acoustics.levels import level_db
+from propmdao.acoustics.levels.decibels import level_db
 
 C, NU = 340.0, 1.5e-5
 BANDS = third_octave_centers(200, 20e3)

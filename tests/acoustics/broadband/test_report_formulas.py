@@ -9,7 +9,8 @@ import jax.numpy as jnp
 import numpy as np
 import pytest
 
-from propmdao.acoustics.broadband import boundary_layer, shedding_spectra, turbulent_spectra
+from propmdao.acoustics.broadband import shedding_spectra, turbulent_spectra
+from propmdao.acoustics.broadband.boundary_layer import boundary_layer
 
 log10 = np.log10
 RE = 10 ** np.linspace(4.3, 6.5, 4001)

@@ -9,15 +9,12 @@ import jax.numpy as jnp
 import numpy as np
 import pytest
 
-from propmdao.acoustics import arc
-from propmdao.acoustics.broadband import (
-    boundary_layer,
-    radiation,
-    rotor_self_noise,
-    third_octave_centers,
-    trailing_edge_noise,
-)
-from propmdao.acoustics.levels import level_db
+from propmdao.acoustics.broadband.boundary_layer import boundary_layer
+from propmdao.acoustics.broadband.directivity import radiation
+from propmdao.acoustics.broadband.rotor import rotor_self_noise
+from propmdao.acoustics.broadband.self_noise import third_octave_centers, trailing_edge_noise
+from propmdao.acoustics.kinematics.observers import arc
+from propmdao.acoustics.levels.decibels import level_db
 
 C, NU = 340.0, 1.5e-5
 BANDS = third_octave_centers(315, 20e3)

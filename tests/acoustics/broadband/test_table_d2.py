@@ -6,13 +6,11 @@ import jax.numpy as jnp
 import numpy as np
 import pytest
 
-from propmdao.acoustics.broadband import (
-    Section,
-    boundary_layer,
-    radiation,
-    trailing_edge_noise,
-)
-from propmdao.acoustics.levels import level_db
+from propmdao.acoustics.broadband.boundary_layer import boundary_layer
+from propmdao.acoustics.broadband.directivity import radiation
+from propmdao.acoustics.broadband.section import Section
+from propmdao.acoustics.broadband.self_noise import trailing_edge_noise
+from propmdao.acoustics.levels.decibels import level_db
 
 SOUND_SPEED, VISCOSITY = 340.46, 1.4529e-5
 # Hz, dB: pressure side, suction side, separation, laminar shedding, total. Below -100 dB the

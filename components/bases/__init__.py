@@ -1,0 +1,1 @@
+"""What components are built on: a compiled function, operating points, a root."""

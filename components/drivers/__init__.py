@@ -1,0 +1,1 @@
+"""Drivers: differential evolution, sweeps, and what they share."""

@@ -1,0 +1,201 @@
+"""Differential evolution in which constraints hold and every design is evaluated once."""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Callable, Iterator
+from typing import Any
+
+import numpy as np
+from scipy.optimize import NonlinearConstraint, OptimizeResult, differential_evolution
+from tqdm import tqdm
+
+from propmdao.components.drivers.runs.candidate import Array, Candidate
+
+
+@dataclasses.dataclass(frozen=True)
+class Generation:
+    """The search at the end of one generation: a row of a convergence figure.
+
+    Attributes
+    ----------
+    generation : int
+        0 for the initial population.
+    evaluations : int
+        Designs evaluated so far.
+    best_objective : float
+        Objective of the best feasible design so far, in its own units; nan while there is none.
+    max_violation : float
+        Largest constraint violation of the best design so far in driver scaling, 0 when feasible.
+    failed : int
+        Designs so far whose analysis failed.
+    """
+
+    generation: int
+    evaluations: int
+    best_objective: float
+    max_violation: float
+    failed: int
+
+
+class SearchStopped(Exception):
+    """Raised by an evaluation to end the search; its message says why."""
+
+
+class ConstrainedSearch:
+    """``scipy.optimize.differential_evolution`` on candidates that know their violation.
+
+    Parameters
+    ----------
+    evaluate : callable
+        Takes a list of positions (n_variables,) and yields their candidates in that order, each
+        with at least one violation.
+    improved : callable
+        Called with every candidate that is better than all before it and the number of
+        evaluations so far, right after its evaluation.
+    progress : tqdm
+        Bar that counts the evaluations.
+
+    Attributes
+    ----------
+    best : Candidate or None
+        Best candidate so far.
+    evaluations, failed : int
+        Candidates evaluated, and how many of them failed.
+    last_failure : str
+        Reason of the latest failure, empty when there was none.
+    history : list of Generation
+        State after each generation.
+    """
+
+    def __init__(
+        self,
+        evaluate: Callable[[list[Array]], Iterator[Candidate]],
+        improved: Callable[[Candidate, int], None],
+        progress: tqdm,
+    ) -> None:
+        self.best: Candidate | None = None
+        self.evaluations = 0
+        self.failed = 0
+        self.last_failure = ""
+        self.history: list[Generation] = []
+        self._evaluate = evaluate
+        self._improved = improved
+        self._progress = progress
+        self._memo: dict[bytes, Candidate] = {}
+
+    def run(self, population: Array, **scipy_options: Any) -> tuple[Candidate, str]:
+        """Search from an initial population.
+
+        Parameters
+        ----------
+        population : (n_candidates, n_variables) array
+            Initial positions.
+        **scipy_options
+            Options of scipy's ``differential_evolution``: bounds, maxiter, rng, ...
+
+        Returns
+        -------
+        best : Candidate
+            Best candidate of all that were evaluated.
+        ending : str
+            "converged" when the population converged on a feasible candidate, "stopped" after the
+            last generation, or the message of a `SearchStopped`.
+        """
+        # `vectorized` hands over a whole generation at once. There is always a constraint and scipy
+        # calls it first, so that exceptions of the model do not pass through the objective call,
+        # which would rename them. Its own count of evaluations leaves out the infeasible ones.
+        try:
+            result = differential_evolution(
+                self._energies,
+                init=population,
+                constraints=NonlinearConstraint(self._violations, -np.inf, 0.0),
+                vectorized=True,
+                updating="deferred",
+                polish=False,
+                callback=self._end_generation,
+                **scipy_options,
+            )
+            ending = "converged" if result.success else "stopped"
+        except SearchStopped as stop:
+            ending = str(stop)
+        assert self.best is not None
+        return self.best, ending
+
+    def summary(self, ending: str) -> str:
+        """Return one line: what was found, how the search ended, and after how much."""
+        best = self.best
+        assert best is not None
+        if best.feasible:
+            found = f"best objective {best.objective:.8g}"
+        elif best.failure:
+            found = f"every analysis failed, last with: {self.last_failure}"
+        else:
+            found = f"no feasible design, smallest total violation {best.violation.sum():.3g}"
+        return (
+            f"{found}; {ending} after {max(len(self.history) - 1, 0)} generations, "
+            f"{self.evaluations} designs, {self.failed} of them failed"
+        )
+
+    def _energies(self, positions: Array) -> Array:
+        """Objectives at the columns of ``positions`` (n_variables, n_candidates)."""
+        return np.array([candidate.energy for candidate in self._candidates(positions.T)])
+
+    def _violations(self, positions: Array) -> Array:
+        """Violations (n_constraints, n_candidates) at the columns of ``positions``, or at one."""
+        if positions.ndim == 1:
+            (candidate,) = self._candidates(positions[None])
+            return candidate.violation
+        candidates = self._candidates(positions.T)
+        if not self.history:  # scipy does not call back after the initial population
+            self._record_generation()
+        return np.stack([candidate.violation for candidate in candidates], axis=-1)
+
+    def _candidates(self, positions: Array) -> list[Candidate]:
+        """Evaluate those of the positions (n_candidates, n_variables) that are new, in one call.
+
+        Scipy asks again for the best one every generation, and for the whole population as long as
+        none of it is feasible.
+        """
+        keys = [position.tobytes() for position in positions]
+        new = {
+            key: position
+            for key, position in zip(keys, positions, strict=True)
+            if key not in self._memo
+        }
+        if new:
+            evaluated = self._evaluate(list(new.values()))
+            for key, candidate in zip(new, evaluated, strict=True):
+                self._memo[key] = candidate
+                self._count(candidate)
+        return [self._memo[key] for key in keys]
+
+    def _count(self, candidate: Candidate) -> None:
+        self.evaluations += 1
+        if candidate.failure:
+            self.failed += 1
+            self.last_failure = candidate.failure
+        if self.best is None or candidate.rank < self.best.rank:
+            self.best = candidate
+            self._improved(candidate, self.evaluations)
+        self._progress.update()
+
+    def _end_generation(self, intermediate_result: OptimizeResult) -> None:
+        # Only members of the population are asked for again.
+        kept = (position.tobytes() for position in intermediate_result.population)
+        self._memo = {key: self._memo[key] for key in kept}
+        self._record_generation()
+
+    def _record_generation(self) -> None:
+        best = self.best
+        assert best is not None
+        self.history.append(
+            Generation(
+                generation=len(self.history),
+                evaluations=self.evaluations,
+                best_objective=best.objective if best.feasible else np.nan,
+                max_violation=float(best.violation.max()),
+                failed=self.failed,
+            )
+        )
+        self._progress.set_postfix(best=self.history[-1].best_objective, failed=self.failed)

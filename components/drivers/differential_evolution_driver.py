@@ -1,0 +1,307 @@
+"""Differential evolution with constraints that hold, as an OpenMDAO driver."""
+
+from __future__ import annotations
+
+import contextlib
+import math
+import time
+from collections.abc import Generator, Iterator, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import openmdao.api as om
+from openmdao.core.driver import Driver, RecordingDebugging
+from tqdm import tqdm
+
+from propmdao.components.drivers.best_design_file import write_best_design
+from propmdao.components.drivers.checkpoint import Checkpoint
+from propmdao.components.drivers.constrained_search import (
+    ConstrainedSearch,
+    Generation,
+    SearchStopped,
+)
+from propmdao.components.drivers.runs.candidate import Array, Candidate
+from propmdao.components.drivers.runs.design_runs import DesignRuns
+from propmdao.components.drivers.runs.model_run import ModelRun, put_outputs
+from propmdao.components.drivers.runs.model_runner import declare_runner_options, model_runner
+from propmdao.components.drivers.search_options import (
+    SAMPLERS,
+    declare_file_options,
+    declare_search_options,
+)
+from propmdao.runtime.worker_processes import WorkerLostError
+
+SMALLEST_POPULATION = 5  # what strategies with two differences draw from
+CANDIDATES_PER_VARIABLE = 15  # scipy's default
+
+
+class DifferentialEvolutionDriver(Driver):
+    """Global optimisation by differential evolution (Storn and Price 1997).
+
+    The search is ``scipy.optimize.differential_evolution`` with Lampinen's constraint handling:
+    a feasible design beats an infeasible one, of two feasible designs the lower objective wins,
+    and an infeasible one gives way only to a design that violates no constraint more.
+
+    - The model runs once per design, for the objective and all constraints, and once more at the
+      end to leave the Problem at the best design. Every run starts from the output values that
+      the model held when the driver started, so no result depends on what ran before it.
+    - Every element of every constraint counts: lower, upper, both, or ``equals`` within
+      ``equality_tolerance``. Violations are compared in driver scaling (``ref``, ``scaler``).
+    - A design whose analysis raises ``om.AnalysisError``, or whose objective or constraints are
+      not finite, loses against every other and the search goes on. Any other exception is an
+      error in the model and ends the run.
+    - The first member of the initial population is the current design, clipped to its bounds.
+    - After an interrupt (Ctrl-C) the model is run once at the best design found so far, then
+      ``KeyboardInterrupt`` propagates. The same holds when a worker dies (``WorkerLostError``).
+    - With ``checkpoint`` every design is on disk once it is evaluated. Run again after whatever
+      ended it, even a kill, the search goes on from there to the same end, or beyond it.
+    - With ``n_workers`` or ``executor`` the designs of a generation run side by side, on Problems
+      that the workers build by ``problem_factory`` and that start from the values of this one.
+      The search, its files and its recorded cases are the same, whatever the number of workers,
+      if the model computes the same numbers on one thread as on several. Each worker has one; an
+      executor of your own needs `runtime.worker_processes.use_one_thread` as its initializer.
+    - With ``designs_at_once`` the components of this package evaluate so many designs in one
+      compiled call, which is what an accelerator is for; on two cores eight are a third faster than
+      one after the other and workers twice as fast. A blade takes some 20 MB. Other components,
+      ``ExecComp`` say, run at one design after the other. The numbers are those of single runs to
+      rounding, so that a long search may take another path.
+    - Cases from a checkpoint are recorded again; outputs that it does not hold are nan, which are
+      all but independent variables, objective and constraints.
+
+    When no feasible design was found, ``fail`` is True and the Problem is left at the design with
+    the smallest total violation, or where every analysis failed at the initial design.
+
+    Parameters
+    ----------
+    **kwargs : dict
+        Values of the options.
+
+    Attributes
+    ----------
+    fail : bool
+        True when no feasible design was found.
+    message : str
+        Why the search ended.
+    """
+
+    def __init__(self, **kwargs: Any) -> None:
+        super().__init__(**kwargs)
+        for feature in (
+            "optimization",
+            "inequality_constraints",
+            "equality_constraints",
+            "two_sided_constraints",
+            "linear_constraints",
+        ):
+            self.supports[feature] = True
+        self.supports["integer_design_vars"] = False
+        self.supports["distributed_design_vars"] = False
+        self.supports._read_only = True
+
+        self.fail = True
+        self.message = ""
+        self._search: ConstrainedSearch | None = None
+        self._case_failure = ""
+
+    @property
+    def history(self) -> list[Generation]:
+        """State after each generation."""
+        return self._search.history if self._search else []
+
+    @property
+    def failed_candidates(self) -> int:
+        """Number of designs whose analysis failed."""
+        return self._search.failed if self._search else 0
+
+    @property
+    def last_failure(self) -> str:
+        """Reason of the latest failure, empty when there was none."""
+        return self._search.last_failure if self._search else ""
+
+    def _declare_options(self) -> None:
+        declare_search_options(self.options)
+        declare_runner_options(self.options)
+        declare_file_options(self.options)
+
+    def _get_name(self) -> str:
+        return "DifferentialEvolution"
+
+    def _setup_driver(self, problem: om.Problem) -> None:
+        super()._setup_driver(problem)
+        n_objectives = sum(meta["size"] for meta in self._objs.values())
+        if n_objectives > 1:
+            raise RuntimeError(
+                f"{self.msginfo} minimises one scalar objective; the model has {n_objectives}: "
+                f"{', '.join(self._objs)}"
+            )
+        for name, meta in self._designvars.items():
+            lower, upper = meta["lower"], meta["upper"]
+            # OpenMDAO keeps None for a bound that was not given; users also write 1e30.
+            if any(bound is None or not np.all(np.abs(bound) < 1e30) for bound in (lower, upper)):
+                need = "finite bounds"
+            elif np.any(np.greater(lower, upper)):
+                need = "lower <= upper"
+            else:
+                continue
+            raise ValueError(
+                f"{self.msginfo} needs {need}; design variable '{name}' has "
+                f"lower={lower}, upper={upper}"
+            )
+
+    def run(self) -> bool:
+        """Search, and leave the Problem at the best design.
+
+        Returns
+        -------
+        bool
+            True when no feasible design was found.
+        """
+        self.result.reset()
+        self.fail, self.message, self._search = True, "", None
+        self.iter_count = 0
+        self._check_for_missing_objective()
+        self._check_for_invalid_desvar_values()
+        if not self._designvars:
+            raise RuntimeError(f"{self.msginfo} needs a design variable; the model has none")
+        self._runs = DesignRuns(self, self.options["equality_tolerance"])
+        seed = self.options["seed"]
+        self._checkpoint = self._open_checkpoint()
+        if self._checkpoint is not None:
+            seed = self._checkpoint.seed
+        budget = self.options["time_budget"]
+        self._deadline = math.inf if budget is None else time.monotonic() + budget
+        with model_runner(self._problem().model, self.options) as self._runner:
+            return self._run_search(np.random.default_rng(seed))
+
+    def _run_search(self, rng: np.random.Generator) -> bool:
+        population = self._initial_population(rng)
+        with tqdm(
+            total=len(population) * (self.options["max_gen"] + 1),
+            desc=self._get_name(),
+            unit="design",
+            disable=None if self.options["progress"] else True,
+        ) as progress:
+            search = self._search = ConstrainedSearch(
+                self._evaluate_positions, self._improved, progress
+            )
+            passed_on = ("strategy", "mutation", "recombination", "tol")
+            try:
+                best, ending = search.run(
+                    population,
+                    # A fixed variable has one position, so that no design is run twice.
+                    bounds=[(0.0, float(free)) for free in self._runs.upper > self._runs.lower],
+                    maxiter=self.options["max_gen"],
+                    rng=rng,
+                    **{name: self.options[name] for name in passed_on},
+                )
+            except (KeyboardInterrupt, WorkerLostError) as error:
+                if search.best is not None:
+                    self._conclude(search.best.design, None)
+                if self._checkpoint:
+                    error.add_note(
+                        f"The {search.evaluations} designs evaluated so far are in"
+                        f" '{self._checkpoint.path}': run again to go on from there."
+                    )
+                raise
+        self._conclude(best.design, None)
+        self.fail = not best.feasible
+        self.message = search.summary(ending)
+        if self.options["disp"]:
+            print(f"{self._get_name()}: {self.message}")
+        return self.fail
+
+    def _initial_population(self, rng: np.random.Generator) -> Array:
+        """Return positions in the unit cube (pop_size, n_variables), the current design first."""
+        n_variables = self._runs.lower.size
+        sampler = SAMPLERS[self.options["init"]](n_variables, rng=rng)
+        population: Array = sampler.random(self._population_size())
+        population[0] = self._runs.current_position()
+        return population
+
+    def _population_size(self) -> int:
+        size = self.options["pop_size"] or max(
+            SMALLEST_POPULATION, CANDIDATES_PER_VARIABLE * self._runs.lower.size
+        )
+        if size < SMALLEST_POPULATION:
+            raise ValueError(
+                f"{self.msginfo}: pop_size must be at least {SMALLEST_POPULATION}; it is {size}"
+            )
+        return int(size)
+
+    def _open_checkpoint(self) -> Checkpoint | None:
+        if self.options["checkpoint"] is None:
+            return None
+        # When to stop is no part of it: a search may be resumed with more generations.
+        options = ("seed", "strategy", "init", "mutation", "recombination", "equality_tolerance")
+        search = {name: self.options[name] for name in options}
+        search |= {"pop_size": self._population_size(), **self._runs.description()}
+        checkpoint = Checkpoint(self._output_file("checkpoint"), search)
+        entry = checkpoint.first_success()
+        if entry is not None:
+            self._runs.set_design(np.array(entry["design"]))
+            self._run_solve_nonlinear()
+            checkpoint.require_same_model(entry, self._runs.responses())
+        return checkpoint
+
+    def _output_file(self, option: str) -> Path:
+        """Path that an option gives, in the Problem's outputs directory unless it is absolute."""
+        path: Path = self._problem().get_outputs_dir() / self.options[option]
+        path.parent.mkdir(parents=True, exist_ok=True)
+        return path
+
+    def _evaluate_positions(self, positions: Sequence[Array]) -> Iterator[Candidate]:
+        """Evaluate designs in their order: from the checkpoint, then here or on the workers."""
+        designs = [self._runs.at_position(position) for position in positions]
+        checkpoint = self._checkpoint
+        entries = checkpoint.replay(designs) if checkpoint else []
+        for design, entry in zip(designs, entries, strict=False):
+            outputs = self._runs.outputs_from(design, entry["outputs"])
+            yield self._conclude(design, ModelRun(outputs, entry["failure"]))
+        with contextlib.closing(self._model_runs(designs[len(entries) :])) as runs:
+            for design in designs[len(entries) :]:
+                if time.monotonic() > self._deadline and self.iter_count > 0:
+                    raise SearchStopped("stopped at the end of its time budget")
+                candidate = self._conclude(design, next(runs))
+                if checkpoint:
+                    responses = {} if candidate.failure else self._runs.responses()
+                    checkpoint.append(design, candidate.failure, responses)
+                yield candidate
+
+    def _model_runs(self, designs: list[Array]) -> Generator[ModelRun | None, None, None]:
+        """Runs at designs, or as many None: to be run here, one after the other."""
+        if self._runner is None:
+            yield from [None] * len(designs)
+        else:
+            for run in self._runner.run(map(self._runs.start_at, designs)):
+                if run.error is not None:
+                    raise run.error
+                self.result.model_evals += not run.failure  # as OpenMDAO counts runs here
+                yield run
+
+    def _conclude(self, design: Array, run: ModelRun | None) -> Candidate:
+        """Have the model run, here or from a run elsewhere, and read it; one driver case."""
+        self._runs.set_design(design)
+        with RecordingDebugging(self._get_name(), self.iter_count, self):
+            try:
+                if run is None:
+                    self._run_solve_nonlinear()
+                else:
+                    put_outputs(self._problem().model, run.outputs)
+                    if run.failure:
+                        raise om.AnalysisError(run.failure)
+                candidate = self._runs.read(design)
+            except om.AnalysisError as error:
+                candidate = self._runs.failed(design, error)
+            self._case_failure = candidate.failure
+        self.iter_count += 1
+        return candidate
+
+    def _improved(self, candidate: Candidate, evaluations: int) -> None:
+        if candidate.feasible and self.options["best_file"] is not None:
+            write_best_design(self._output_file("best_file"), self, evaluations)
+
+    def _get_recorder_metadata(self, case_name: str) -> dict[str, Any]:
+        metadata = super()._get_recorder_metadata(case_name)
+        metadata.update(success=int(not self._case_failure), msg=self._case_failure)
+        return metadata

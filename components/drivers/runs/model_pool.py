@@ -1,0 +1,162 @@
+"""Runs of a model in other processes, on any executor of `concurrent.futures`."""
+
+from __future__ import annotations
+
+import contextlib
+import pickle
+import threading
+import traceback
+from collections.abc import Callable, Iterable, Iterator
+from concurrent.futures import BrokenExecutor, Executor
+from functools import partial
+from typing import Any
+
+import openmdao.api as om
+from openmdao.core.constants import _SetupStatus
+from openmdao.core.driver import Driver
+
+from propmdao.components.drivers.runs.candidate import Array
+from propmdao.components.drivers.runs.model_run import ModelRun, run_system
+from propmdao.runtime.worker_processes import results_in_order
+
+# An executor may run tasks on threads; a Problem serves one at a time.
+_WORKER = threading.local()
+
+
+class ModelPool:
+    """Models on the workers of an executor, each run from the output values it is sent.
+
+    Values travel, structure does not: every worker builds its Problem once, and what the outputs
+    vector holds before a run, independent variables and initial states alike, comes from the
+    Problem that asks. So a run gives what it would have given there.
+
+    Parameters
+    ----------
+    factory : callable
+        Returns, without arguments, a Problem that has been set up, with the same model as `model`.
+        It has to pickle, which functions of a module do and nested ones and lambdas do not. It
+        should not attach recorders, whose file every worker would open anew.
+    model : om.Group
+        Model of the Problem that asks, after its final setup.
+    executor : concurrent.futures.Executor
+        Where the runs take place.
+
+    Raises
+    ------
+    ValueError
+        When the factory does not pickle.
+    """
+
+    def __init__(
+        self, factory: Callable[[], om.Problem], model: om.Group, executor: Executor
+    ) -> None:
+        try:
+            self._task = pickle.dumps((factory, _layout(model)))
+        except Exception as error:  # pickle raises whatever an object's methods raise
+            raise ValueError(
+                f"problem_factory {factory!r} does not pickle ({error}); use a function that stands"
+                " at the top of a module, or functools.partial of one"
+            ) from error
+        self._executor = executor
+
+    def build_ahead(self, n_workers: int) -> None:
+        """Have so many idle workers build the model, side by side instead of one by one."""
+        with contextlib.suppress(BrokenExecutor):  # which the first run says
+            for _ in range(n_workers):
+                self._executor.submit(_build_ahead, self._task)
+
+    def run(self, starts: Iterable[Array]) -> Iterator[ModelRun]:
+        """Run the model from each of several outputs vectors.
+
+        Parameters
+        ----------
+        starts : iterable of (n,) arrays
+            Values of all outputs before each run.
+
+        Yields
+        ------
+        ModelRun
+            In the order of `starts`.
+
+        Raises
+        ------
+        WorkerLostError
+            When a worker dies.
+        Exception
+            What the factory raises.
+        """
+        for run in results_in_order(self._executor, partial(_run_model, self._task), starts):
+            if run.error is not None and not run.built:
+                raise run.error
+            yield run
+
+
+def _layout(model: om.Group) -> dict[str, int]:
+    """Sizes of all outputs in the order of the outputs vector."""
+    return {name: meta["size"] for name, meta in model._var_allprocs_abs2meta["output"].items()}
+
+
+def _run_model(task: bytes, start: Array) -> ModelRun:
+    """Run the model of a task in this worker."""
+    built = False
+    try:
+        model = _problem(task).model
+        built = True
+        outputs = model.get_nonlinear_vectors()[1]
+        outputs.set_val(start)
+        return run_system(model, outputs)
+    except Exception as error:
+        return ModelRun(start, error=_that_travels(error), built=built)
+
+
+def _problem(task: bytes) -> om.Problem:
+    """Problem of this worker for a task, built on first use."""
+    if getattr(_WORKER, "task", None) != task:
+        _WORKER.problem = _build(task)
+        _WORKER.task = task
+    problem: om.Problem = _WORKER.problem
+    return problem
+
+
+def _build_ahead(task: bytes) -> None:
+    with contextlib.suppress(Exception):  # which the first run says
+        _problem(task)
+
+
+def _build(task: bytes) -> om.Problem:
+    factory, expected = pickle.loads(task)
+    problem = factory()
+    if not isinstance(problem, om.Problem) or not _is_set_up(problem):
+        raise ValueError(
+            f"problem_factory must return a Problem that has been set up; it returns {problem!r}"
+        )
+    # Its driver is never run, but its recorder would open the file of the driver that is.
+    problem.driver = Driver()
+    problem.final_setup()
+    built = _layout(problem.model)
+    if list(built.items()) != list(expected.items()):
+        different = sorted(dict(built.items() ^ expected.items())) or ["the order of outputs"]
+        raise ValueError(
+            f"problem_factory builds another model than the driver's Problem has: they differ in"
+            f" {', '.join(different[:3])}"
+        )
+    return problem
+
+
+def _is_set_up(problem: om.Problem) -> bool:
+    metadata = problem._metadata
+    return metadata is not None and metadata["setup_status"] >= _SetupStatus.POST_SETUP
+
+
+def _that_travels(error: Exception) -> Exception:
+    """Return the error with the worker's traceback, or what it says where it does not pickle."""
+    note = "In a worker:\n" + "".join(traceback.format_exception(error))
+    error.__cause__ = error.__context__ = None
+    try:
+        error.add_note(note)
+        copy: Any = pickle.loads(pickle.dumps(error))
+        return copy
+    except Exception:
+        plain = RuntimeError(f"{type(error).__name__}: {error}")
+        plain.add_note(note)
+        return plain

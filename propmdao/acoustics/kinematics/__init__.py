@@ -1,0 +1,1 @@
+"""How sources and observers move, and when what is emitted is heard."""

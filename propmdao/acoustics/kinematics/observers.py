@@ -1,0 +1,234 @@
+"""Where the microphones are: positions from the rotor centre, flying along with it.
+
+Directions have the names of the rotor's tests: elevation from the rotor plane, negative below it
+(the wake side), and azimuth about the rotor axis from the +x axis. Microphones on the ground are in
+`propmdao.acoustics.kinematics.tracks`.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+Positions = NDArray[np.float64]
+
+
+class Directions(NamedTuple):
+    """Where observers are, seen from the rotor centre; each an array of the positions' shape.
+
+    Attributes
+    ----------
+    radius : (...,) array
+        Distance from the rotor centre [m].
+    elevation_deg : (...,) array
+        Angle from the rotor plane [deg], -90 (below, the wake side) to +90 (ahead).
+    azimuth_deg : (...,) array
+        Angle about the rotor axis from +x [deg], above -180 to 180, in the sense of the rotation.
+    """
+
+    radius: NDArray[np.float64]
+    elevation_deg: NDArray[np.float64]
+    azimuth_deg: NDArray[np.float64]
+
+
+def point(radius: ArrayLike, elevation_deg: ArrayLike, azimuth_deg: ArrayLike = 0.0) -> Positions:
+    """Place observers by direction and distance.
+
+    Parameters
+    ----------
+    radius : float or (n_observers,)
+        Distance from the rotor centre [m].
+    elevation_deg : float or (n_observers,)
+        Angle from the rotor plane [deg], from -90 (below, the wake side) to +90 (ahead).
+    azimuth_deg : float or (n_observers,)
+        Angle about the rotor axis from +x [deg].
+
+    Returns
+    -------
+    (n_observers, 3) array
+        ``radius (cos el cos az, cos el sin az, sin el)`` [m].
+
+    Raises
+    ------
+    ValueError
+        If a radius is not positive, an elevation is outside -90 ... 90 deg or an azimuth is not
+        finite.
+    """
+    r, elevation, azimuth = np.broadcast_arrays(
+        *(np.atleast_1d(np.asarray(q, float)) for q in (radius, elevation_deg, azimuth_deg))
+    )
+    for wrong in r[~((r > 0) & np.isfinite(r))]:
+        raise ValueError(f"observer radius must be positive and finite [m]; got {wrong:g}")
+    for wrong in elevation[~(np.abs(elevation) <= 90)]:
+        raise ValueError(f"observer elevation must be within -90 ... 90 deg; got {wrong:g}")
+    for wrong in azimuth[~np.isfinite(azimuth)]:
+        raise ValueError(f"observer azimuth must be finite [deg]; got {wrong:g}")
+    el, az = np.radians(elevation), np.radians(azimuth)
+    return np.stack(
+        [r * np.cos(el) * np.cos(az), r * np.cos(el) * np.sin(az), r * np.sin(el)], axis=-1
+    )
+
+
+def arc(radius: ArrayLike, elevation_deg: ArrayLike) -> Positions:
+    """Place observers on a vertical arc around the rotor centre.
+
+    Parameters
+    ----------
+    radius : float or (n_observers,)
+        Distance from the rotor centre [m].
+    elevation_deg : float or (n_observers,)
+        Angle from the rotor plane [deg], from -90 (below, the wake side) to +90 (ahead).
+
+    Returns
+    -------
+    (n_observers, 3) array
+        ``radius (cos el, 0, sin el)`` [m].
+
+    Raises
+    ------
+    ValueError
+        If a radius is not positive or an elevation is outside -90 ... 90 deg.
+    """
+    return point(radius, elevation_deg)
+
+
+def circle(radius: float, n: int, elevation_deg: float = 0.0) -> Positions:
+    """Place observers evenly around the rotor axis, from azimuth 0 in the sense of the rotation.
+
+    Parameters
+    ----------
+    radius : float
+        Distance from the rotor centre [m].
+    n : int
+        How many.
+    elevation_deg : float
+        0 in the rotor plane, negative on a cone below it [deg].
+
+    Returns
+    -------
+    (n, 3) array
+        Positions [m].
+
+    Raises
+    ------
+    ValueError
+        If there is none, or as in `point`.
+    """
+    if n < 1:
+        raise ValueError(f"a circle needs at least 1 observer; got {n}")
+    return point(radius, elevation_deg, 360 / n * np.arange(n))
+
+
+def sphere(radius: float, elevation_deg: ArrayLike, azimuth_deg: ArrayLike) -> Positions:
+    """Place observers on a sphere: every elevation with every azimuth, as a map wants them.
+
+    Parameters
+    ----------
+    radius : float
+        Distance from the rotor centre [m].
+    elevation_deg : (n_elevations,) array_like
+        Angles from the rotor plane [deg]; -90 ... 0 is the hemisphere below the rotor.
+    azimuth_deg : (n_azimuths,) array_like
+        Angles about the rotor axis from +x [deg].
+
+    Returns
+    -------
+    (n_elevations * n_azimuths, 3) array
+        Positions [m], azimuths running fastest: levels there ``reshape(n_elevations, n_azimuths)``.
+
+    Raises
+    ------
+    ValueError
+        As in `point`.
+    """
+    elevation, azimuth = np.meshgrid(elevation_deg, azimuth_deg, indexing="ij")
+    return point(radius, elevation.ravel(), azimuth.ravel())
+
+
+def hemisphere(radius: float, step_deg: float = 10.0) -> Positions:
+    """Place observers on the hemisphere below the rotor, where people are.
+
+    Parameters
+    ----------
+    radius : float
+        Distance from the rotor centre [m].
+    step_deg : float
+        Between neighbours in elevation (-90 ... 0) and azimuth (0 ... 360, closed) [deg]; divides
+        90.
+
+    Returns
+    -------
+    ((90 / step + 1) * (360 / step + 1), 3) array
+        Positions [m] in the order of `sphere`.
+
+    Raises
+    ------
+    ValueError
+        If the step does not divide 90 deg, or as in `point`.
+    """
+    n = round(90 / step_deg) if step_deg > 0 else 0
+    if n < 1 or abs(n * step_deg - 90) > 1e-9:
+        raise ValueError(f"step of a hemisphere must divide 90 deg; got {step_deg:g}")
+    return sphere(radius, np.linspace(-90, 0, n + 1), np.linspace(0, 360, 4 * n + 1))
+
+
+def grid(x: ArrayLike, y: ArrayLike, z: ArrayLike) -> Positions:
+    """Place observers at every combination of coordinates.
+
+    Parameters
+    ----------
+    x, y, z : float or (n,) array_like
+        Coordinates [m]; a plane has one of a single value.
+
+    Returns
+    -------
+    (n_x * n_y * n_z, 3) array
+        Positions [m], z running fastest.
+    """
+    return np.stack(np.meshgrid(x, y, z, indexing="ij"), axis=-1).reshape(-1, 3).astype(float)
+
+
+def directions(positions: ArrayLike) -> Directions:
+    """Distance and direction of observers from the rotor centre, for tables and figures.
+
+    Parameters
+    ----------
+    positions : (..., 3) array_like
+        From the rotor centre [m].
+
+    Returns
+    -------
+    Directions
+        Radius, elevation and azimuth.
+    """
+    x, y, z = np.moveaxis(np.asarray(positions, float), -1, 0)
+    across = np.hypot(x, y)
+    return Directions(
+        np.hypot(across, z), np.degrees(np.arctan2(z, across)), np.degrees(np.arctan2(y, x))
+    )
+
+
+def labels(positions: ArrayLike) -> list[str]:
+    """Names of observers by elevation, and by azimuth and distance where those are not all equal.
+
+    Parameters
+    ----------
+    positions : (n_observers, 3) array_like
+        From the rotor centre [m].
+
+    Returns
+    -------
+    list of str
+        Such as ``"-45°"``, or ``"-45°, azimuth 90°, 3 m"``.
+    """
+    seen = directions(np.reshape(positions, (-1, 3)))
+    names = [f"{elevation:.4g}°" for elevation in seen.elevation_deg]
+    # At a pole of the sphere there is no azimuth.
+    turned = np.where(np.abs(seen.elevation_deg) > 90 - 1e-9, 0.0, seen.azimuth_deg)
+    if np.any(np.abs(turned) > 1e-9):
+        names = [f"{name}, azimuth {a:.4g}°" for name, a in zip(names, turned, strict=True)]
+    if np.ptp(seen.radius) > 1e-9 * seen.radius.max():
+        names = [f"{name}, {r:.4g} m" for name, r in zip(names, seen.radius, strict=True)]
+    return names

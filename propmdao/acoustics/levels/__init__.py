@@ -1,0 +1,1 @@
+"""Levels: decibels, weighting, bands, spectra, levels over time, perceived noise."""

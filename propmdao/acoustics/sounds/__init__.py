@@ -1,0 +1,1 @@
+"""Records of pressure to listen to."""

@@ -1,0 +1,1 @@
+"""The vortex lattice of a blade: rings and the strips they form."""

@@ -1,0 +1,1 @@
+"""Blade sections in viscous flow: polars, stall delay, and how the lattice is held to them."""

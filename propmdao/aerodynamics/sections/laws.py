@@ -1,0 +1,161 @@
+"""What the sections of a blade do in viscous flow, as the lattice is held to it.
+
+Past stall, where cl falls with alpha, strips much narrower than their chord could trade lift with
+their neighbours, in many ways at will. A polar is that of a section, which has no meaning over less
+span than a chord: what the polar takes off the lift of thin-airfoil theory, cl - cl_p, enters as
+its mean over the span nearby. That leaves one solution on any mesh.
+"""
+
+from __future__ import annotations
+
+import jax.numpy as jnp
+from jax import Array
+
+from propmdao.aerodynamics.lattice.strips import Strips
+from propmdao.aerodynamics.sections.polars.family import SectionPolars, blade_tables
+from propmdao.aerodynamics.sections.polars.table import (
+    PolarTable,
+    SectionCurves,
+    curve_coefficients,
+    section_curves,
+)
+from propmdao.aerodynamics.sections.stall_delay import delay_factor, delayed_stall
+from propmdao.geometry.blade import Blade, SpanInterpolation
+from propmdao.records.pytrees import Scalar, record
+
+AIR_VISCOSITY = 1.789e-5  # dynamic, at 15 C [Pa s]
+_MIXING = 0.5  # standard deviation of the mean over the span, in chords
+
+
+@record
+class ViscousSections:
+    """What the sections of a blade do in viscous flow.
+
+    Attributes
+    ----------
+    polars : PolarTable
+        Polars of the sections in the middle of the strips, ns rows.
+    dynamic_viscosity, sound_speed : float
+        Of the air [Pa s], [m/s].
+    stall_delay : float
+        1 where rotation delays stall, 0 for polars as in two dimensions.
+    """
+
+    polars: PolarTable
+    dynamic_viscosity: Scalar
+    sound_speed: Scalar
+    stall_delay: Scalar
+
+
+def viscous_sections(
+    polars: SectionPolars,
+    blade: Blade,
+    section_radii: SpanInterpolation,
+    sound_speed: Scalar,
+    stall_delay: Scalar = 1.0,
+) -> ViscousSections:
+    """Sections of a blade in air of 15 C viscosity.
+
+    Parameters
+    ----------
+    polars : SectionPolars
+        Polars of the propeller's sections.
+    blade : Blade
+        Its blade, modified or not.
+    section_radii : SpanInterpolation
+        From the blade's stations to `propmdao.aerodynamics.lattice.strips.strip_radii`.
+    sound_speed, stall_delay : float
+        As in `ViscousSections`.
+
+    Returns
+    -------
+    ViscousSections
+        What the lattice is held to.
+    """
+    table = blade_tables(polars, blade, section_radii)
+    values = (jnp.asarray(value, float) for value in (AIR_VISCOSITY, sound_speed, stall_delay))
+    return ViscousSections(table, *values)
+
+
+@record
+class SectionLaws:
+    """Polars of the strips at an operating point.
+
+    Attributes
+    ----------
+    curves : SectionCurves
+        In two dimensions, at the strips' Reynolds and Mach numbers.
+    zero_lift_angle : (ns,) array
+        By thin-airfoil theory [rad].
+    potential_zero_lift_angle, stall_delay : (ns,) arrays
+        As `delayed_stall` takes them.
+    mean : (ns, ns) array
+        Means over the span near each strip.
+    """
+
+    curves: SectionCurves
+    zero_lift_angle: Array
+    potential_zero_lift_angle: Array
+    stall_delay: Array
+    mean: Array
+
+    def thin(self, alpha: Array) -> Array:
+        """Lift coefficient by thin-airfoil theory: (ns,)."""
+        return 2.0 * jnp.pi * (alpha - self.zero_lift_angle)
+
+    def beyond_thin(self, alpha: Array) -> tuple[Array, Array]:
+        """What the polars add to the lift of thin-airfoil theory, and drag: (ns,) each."""
+        cl, cd, _ = curve_coefficients(self.curves, alpha)
+        cl, cd = delayed_stall(cl, cd, alpha, self.potential_zero_lift_angle, self.stall_delay)
+        return cl - self.thin(alpha), cd
+
+
+def section_laws(
+    strips: Strips, turning: Array, axial_speed: Scalar, density: Scalar, sections: ViscousSections
+) -> SectionLaws:
+    """Polars of the strips at an operating point.
+
+    Parameters
+    ----------
+    strips : Strips
+        The sections.
+    turning : (ns,) array
+        Speed of rotation [m/s].
+    axial_speed, density : float
+        Flight and induced speed at the disk [m/s], density of the air [kg/m^3].
+    sections : ViscousSections
+        Their polars at any.
+
+    Returns
+    -------
+    SectionLaws
+        Lift and drag by the angle of attack alone.
+    """
+    w = jnp.hypot(turning, axial_speed)
+    reynolds = density * w * strips.chord / sections.dynamic_viscosity
+    curves = section_curves(sections.polars, reynolds, w / sections.sound_speed)
+    tip_speed = turning / strips.r_over_R
+    turning_share = tip_speed / jnp.hypot(tip_speed, axial_speed)
+    factor = delay_factor(strips.chord / strips.radius, strips.r_over_R, turning_share)
+    delay = sections.stall_delay * factor
+    thin, mean = strips.zero_lift_angle, _spanwise_mean(strips)
+    return SectionLaws(curves, thin, _potential_zero_lift_angle(curves, thin), delay, mean)
+
+
+def _potential_zero_lift_angle(curves: SectionCurves, thin: Array) -> Array:
+    """Where the lift of potential flow vanishes that meets the polars in attached flow: (ns,).
+
+    At half the zero-lift angle above the chord line sections work near their best, at any camber
+    and its mirror image. What the boundary layer takes off the camber there is no stall for
+    rotation to delay.
+    """
+    attached = -0.5 * thin
+    cl = curve_coefficients(curves, attached)[0]
+    return attached - jnp.arcsin(cl / (2.0 * jnp.pi))
+
+
+def _spanwise_mean(strips: Strips) -> Array:
+    """Means over the span near each strip, weighted by a Gaussian: (ns, ns), rows sum to 1."""
+    apart = (strips.radius - strips.radius[:, None]) / (_MIXING * strips.chord[:, None])
+    weight = strips.width * jnp.exp(-0.5 * apart**2)
+    return weight / weight.sum(axis=1, keepdims=True)

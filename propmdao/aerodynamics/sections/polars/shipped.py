@@ -1,0 +1,175 @@
+"""The tables that ship: which shapes they hold, how they are packed in their file."""
+
+from __future__ import annotations
+
+import dataclasses
+import functools
+from importlib.resources import files
+from pathlib import Path
+from typing import IO
+
+import numpy as np
+import numpy.typing as npt
+
+from propmdao.aerodynamics.sections.polars.family import shape_values
+from propmdao.aerodynamics.sections.polars.high_angle import FloatArray, IntArray, trusted_range
+from propmdao.aerodynamics.sections.polars.neuralfoil_tables import (
+    REYNOLDS,
+    neuralfoil_grid,
+    neuralfoil_settings,
+)
+from propmdao.propeller.airfoils.airfoil import naca4
+from propmdao.propeller.airfoils.library import find_airfoil
+
+#: Maximum camber and thickness over chord of the tables; negative camber follows by symmetry.
+CAMBER: FloatArray = np.array([0.0, 0.015, 0.03, 0.045, 0.06, 0.075, 0.09])
+THICKNESS: FloatArray = np.array([0.03, 0.045, 0.065, 0.09, 0.12, 0.155, 0.19, 0.22])
+#: Blends of E63 and Clark-Y among the shapes, by share of Clark-Y.
+CLARKY_SHARES = {"e63": 0.0, "e63-clarky": 0.5, "clarky": 1.0}
+#: Shapes of the file: the NACA 4-digit series with its maximum camber at 0.4 c, and the blends.
+SHAPES = ("naca4", *CLARKY_SHARES)
+
+#: Units of the whole numbers in the file: of cl, ln(cd), cm.
+_UNIT = np.array([2e-4, 2e-4, 2e-5])[:, None, None]
+
+
+@dataclasses.dataclass(frozen=True)
+class ShippedTables:
+    """Tables of all shapes and how they were made.
+
+    Attributes
+    ----------
+    values : dict of (n_camber, n_thickness, 3, n_re, n_alpha) arrays
+        By shape; cambers are `CAMBER` and its mirror image.
+    settings : str
+        Program, version and settings, one line.
+    """
+
+    values: dict[str, FloatArray]
+    settings: str
+
+
+def shape(name: str) -> tuple[FloatArray, FloatArray]:
+    """Camber line and thickness of a shape, each scaled to a maximum of 1.
+
+    Parameters
+    ----------
+    name : str
+        One of `SHAPES`.
+
+    Returns
+    -------
+    camber, thickness : (n_chord,) arrays
+        On `propmdao.propeller.airfoils.airfoil.CHORD_FRACTION`.
+    """
+    if name == "naca4":
+        section = naca4(1.0, 0.4, 1.0)
+        camber, thickness = section.camber, section.thickness
+    else:
+        share = CLARKY_SHARES[name]
+        first, last = find_airfoil("e63"), find_airfoil("clarky")
+        camber = (1.0 - share) * first.camber + share * last.camber
+        thickness = (1.0 - share) * first.thickness + share * last.thickness
+    return camber / camber.max(), thickness / thickness.max()
+
+
+def generate(path: Path) -> None:
+    """Make the file of tables; needs NeuralFoil and takes about a minute.
+
+    Parameters
+    ----------
+    path : Path
+        Where to write.
+    """
+    packed, lows, highs = [], [], []
+    for name in SHAPES:
+        coefficients, confidence = neuralfoil_grid(*shape(name), CAMBER, THICKNESS)
+        low, high = limits(coefficients, confidence)
+        coefficients[:, :, 1] = np.log(coefficients[:, :, 1])
+        # Second differences over angle are small whole numbers, which pack to a third.
+        whole = np.round(coefficients / _UNIT).astype(np.int32)
+        packed.append(np.diff(whole, n=2, axis=-1, prepend=np.zeros((*whole.shape[:-1], 2), int)))
+        lows.append(low)
+        highs.append(high)
+    np.savez_compressed(
+        path,
+        packed=np.stack(packed).astype(np.int16),
+        low=np.stack(lows).astype(np.int8),
+        high=np.stack(highs).astype(np.int8),
+        camber=CAMBER,
+        thickness=THICKNESS,
+        reynolds=REYNOLDS,
+        settings=np.array(neuralfoil_settings()),
+    )
+
+
+def limits(coefficients: FloatArray, confidence: FloatArray) -> tuple[IntArray, IntArray]:
+    """Find where each polar of a grid holds, by `trusted_range`.
+
+    Parameters
+    ----------
+    coefficients, confidence : (n_camber, n_thickness, 3, n_re, n_attached) and without the 3
+        As `neuralfoil_grid` returns them.
+
+    Returns
+    -------
+    low, high : (n_camber, n_thickness, n_re) arrays of int
+        Positions in `propmdao.aerodynamics.sections.polars.high_angle.ATTACHED_DEG`.
+    """
+    sure = confidence.reshape(-1, confidence.shape[-1])
+    low, high = trusted_range(coefficients[:, :, 0].reshape(sure.shape), sure)
+    return low.reshape(confidence.shape[:-1]), high.reshape(confidence.shape[:-1])
+
+
+def unpack(packed: npt.NDArray[np.int16]) -> FloatArray:
+    """Coefficients from the whole numbers of the file.
+
+    Parameters
+    ----------
+    packed : (..., 3, n_re, n_attached) array of int16
+        Second differences over angle.
+
+    Returns
+    -------
+    array of the same shape
+        cl, cd, cm.
+    """
+    whole = np.cumsum(np.cumsum(packed.astype(np.int64), axis=-1), axis=-1)
+    coefficients: FloatArray = whole * _UNIT
+    coefficients[..., 1, :, :] = np.exp(coefficients[..., 1, :, :])
+    return coefficients
+
+
+def read_tables(file: str | Path | IO[bytes]) -> ShippedTables:
+    """Read a file of tables.
+
+    Parameters
+    ----------
+    file : path or binary file
+        What `generate` wrote.
+
+    Returns
+    -------
+    ShippedTables
+        The tables, continued through all angles.
+    """
+    with np.load(file) as data:
+        coefficients = unpack(data["packed"])
+        low, high = data["low"].astype(np.intp), data["high"].astype(np.intp)
+        settings = str(data["settings"])
+    values = {name: shape_values(coefficients[k], low[k], high[k]) for k, name in enumerate(SHAPES)}
+    return ShippedTables(values, settings)
+
+
+@functools.cache
+def shipped_tables() -> ShippedTables:
+    """Get the tables of the catalogue, read once.
+
+    Returns
+    -------
+    ShippedTables
+        The tables.
+    """
+    file = files("propmdao.propeller.catalog") / "polars" / "sections.npz"
+    with file.open("rb") as opened:
+        return read_tables(opened)

@@ -1,0 +1,201 @@
+"""Polars of the sections of a blade: lift, drag and moment over angle and Reynolds number."""
+
+from __future__ import annotations
+
+import warnings
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+import numpy.typing as npt
+
+from propmdao.aerodynamics.sections.polars.interpolation import clamped_stencil, periodic_stencil
+from propmdao.aerodynamics.sections.polars.mach import MACH_LIMIT, prandtl_glauert
+from propmdao.records.pytrees import record
+from propmdao.runtime.compilation import compiled
+
+
+class PolarError(ValueError):
+    """A polar cannot be found, read or made; the message is one line."""
+
+
+class PolarSubstituteWarning(UserWarning):
+    """Polars of another section stand in for those that are missing."""
+
+
+class PolarRangeWarning(UserWarning):
+    """A section works outside its polars, which are held at their ends there."""
+
+
+@record
+class PolarTable:
+    """Polars of several sections on shared angles and Reynolds numbers.
+
+    Attributes
+    ----------
+    alpha : (n_alpha,) array
+        Angles of attack from -pi to pi, both included and equal in value [rad].
+    log_re : (n_re,) array
+        Natural logarithms of the Reynolds numbers, rising, at least two.
+    values : (n_sections, 3, n_re, n_alpha) array
+        Lift coefficient, natural logarithm of the drag coefficient (drag stays positive whatever
+        is blended or interpolated), moment coefficient about the quarter chord (nose up).
+    """
+
+    alpha: jax.Array
+    log_re: jax.Array
+    values: jax.Array
+
+    @property
+    def cl(self) -> jax.Array:
+        """Lift coefficients, (n_sections, n_re, n_alpha)."""
+        return self.values[:, 0]
+
+    @property
+    def cd(self) -> jax.Array:
+        """Drag coefficients, (n_sections, n_re, n_alpha)."""
+        return jnp.exp(self.values[:, 1])
+
+    @property
+    def cm(self) -> jax.Array:
+        """Moment coefficients about the quarter chord, (n_sections, n_re, n_alpha)."""
+        return self.values[:, 2]
+
+
+@record
+class SectionCurves:
+    """Polars of several sections, each at its own Reynolds and Mach number.
+
+    Attributes
+    ----------
+    alpha : (n_alpha,) array
+        As in `PolarTable`.
+    values : (n_sections, 3, n_alpha) array
+        Lift coefficient, natural logarithm of the drag coefficient, moment coefficient.
+    mach : (n_sections,) array or number
+        Mach numbers.
+    """
+
+    alpha: jax.Array
+    values: jax.Array
+    mach: jax.Array | float
+
+
+def section_curves(
+    table: PolarTable, re: jax.Array, mach: jax.Array | float = 0.0
+) -> SectionCurves:
+    """Polars at the Reynolds and Mach number of each section.
+
+    Parameters
+    ----------
+    table : PolarTable
+        Polars of n sections.
+    re : (n,) array
+        Reynolds number on the chord, positive; held at the ends of the table (`warn_outside`
+        tells the user).
+    mach : (n,) array or number
+        Mach number.
+
+    Returns
+    -------
+    SectionCurves
+        For `curve_coefficients`, which is cheap at any number of angles.
+    """
+    index, weight = clamped_stencil(table.log_re, jnp.log(re))
+    row = jnp.arange(table.values.shape[0])[:, None]
+    near = table.values[row, :, index]
+    return SectionCurves(table.alpha, jnp.einsum("nrca,nr->nca", near, weight), mach)
+
+
+def curve_coefficients(
+    curves: SectionCurves, alpha: jax.Array
+) -> tuple[jax.Array, jax.Array, jax.Array]:
+    """Lift, drag and moment of each section at its own angle.
+
+    Parameters
+    ----------
+    curves : SectionCurves
+        Polars of n sections.
+    alpha : (n,) array
+        Angle of attack of each section, any angle [rad].
+
+    Returns
+    -------
+    cl, cd, cm : (n,) arrays
+        Coefficients, C1 in the angle; cm about the quarter chord, nose up.
+    """
+    index, weight = periodic_stencil(curves.alpha, alpha)
+    row = jnp.arange(curves.values.shape[0])[:, None]
+    near = curves.values[row, :, index]
+    cl, log_cd, cm = jnp.einsum("nac,na->cn", near, weight)
+    factor = prandtl_glauert(curves.mach, alpha)
+    return factor * cl, jnp.exp(log_cd), factor * cm
+
+
+@compiled
+def section_coefficients(
+    table: PolarTable, alpha: jax.Array, re: jax.Array, mach: jax.Array | float = 0.0
+) -> tuple[jax.Array, jax.Array, jax.Array]:
+    """Lift, drag and moment of each section at its own angle, Reynolds and Mach number.
+
+    Parameters
+    ----------
+    table : PolarTable
+        Polars of n sections.
+    alpha : (n,) array
+        Angle of attack of each section, any angle [rad].
+    re, mach : (n,) array, (n,) array or number
+        As `section_curves` takes them; the Mach number raises lift and moment by
+        `prandtl_glauert` and leaves drag.
+
+    Returns
+    -------
+    cl, cd, cm : (n,) arrays
+        Coefficients, C1 in every argument; cm about the quarter chord, nose up.
+    """
+    return curve_coefficients(section_curves(table, re, mach), alpha)
+
+
+def warn_outside(
+    table: PolarTable,
+    re: npt.ArrayLike,
+    r_over_R: npt.ArrayLike,
+    mach: npt.ArrayLike = 0.0,
+) -> None:
+    """Warn once if sections work outside their polars; call it outside ``jit``.
+
+    Parameters
+    ----------
+    table : PolarTable
+        Polars of n sections.
+    re, r_over_R : (n,) arrays
+        Reynolds number and radius of each section.
+    mach : (n,) array or number
+        Mach number of each section.
+
+    Warns
+    -----
+    PolarRangeWarning
+        One line for Reynolds and one for Mach numbers, naming the section furthest outside.
+    """
+    re, radii = np.asarray(re, dtype=float), np.asarray(r_over_R, dtype=float)
+    low, high = np.exp(np.asarray(table.log_re)[[0, -1]])
+    excess = np.maximum(np.log(low / re), np.log(re / high))
+    if (excess > 1e-9).any():
+        worst = int(excess.argmax())
+        warnings.warn(
+            f"Reynolds number {re[worst]:.3g} at r/R {radii[worst]:.3g} is outside the polars' "
+            f"{low:.3g}..{high:.3g} ({int((excess > 1e-9).sum())} of {re.size} sections are); "
+            "the polars are held at the end of their range there",
+            PolarRangeWarning,
+            stacklevel=2,
+        )
+    machs = np.broadcast_to(np.asarray(mach, dtype=float), radii.shape)
+    if (machs > MACH_LIMIT).any():
+        worst = int(machs.argmax())
+        warnings.warn(
+            f"Mach number {machs[worst]:.3g} at r/R {radii[worst]:.3g} is above {MACH_LIMIT:g}; "
+            "the polars know no shocks: their lift correction is held there, drag has none",
+            PolarRangeWarning,
+            stacklevel=2,
+        )

@@ -1,0 +1,160 @@
+"""Tables from polars that a user has: sampled on all angles, one row per Reynolds number."""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Sequence
+
+import jax.numpy as jnp
+import numpy as np
+from scipy.interpolate import PchipInterpolator
+
+from propmdao.aerodynamics.sections.polars.high_angle import (
+    ALPHA,
+    ATTACHED_DEG,
+    FloatArray,
+    all_angles,
+)
+from propmdao.aerodynamics.sections.polars.table import PolarError, PolarTable
+
+#: Widest step between angles that a polar may have where it holds [deg].
+LARGEST_STEP_DEG = 5.0
+#: So far from no angle of attack that rule holds: C81 tables are coarse beyond [deg].
+CLOSE_DEG = 12.0
+#: A polar that reaches this far both ways is taken as given at all angles [deg].
+FULL_CIRCLE_DEG = 170.0
+#: Angles that every polar must reach [deg].
+NEEDED_DEG = (-1.0, 4.0)
+#: Furthest angles at which a polar is continued [deg].
+_LIMIT_DEG = 20.0
+
+
+@dataclasses.dataclass(frozen=True, eq=False)
+class Polar:
+    """Coefficients of one section at one Reynolds number.
+
+    Attributes
+    ----------
+    name : str
+        The section.
+    re : float
+        Reynolds number.
+    mach : float
+        Mach number.
+    alpha : (n,) array
+        Angles of attack, rising [rad].
+    cl, cd, cm : (n,) arrays
+        Coefficients; cm about the quarter chord, nose up.
+    n_crit : float, optional
+        Critical amplification, where the file tells.
+
+    Raises
+    ------
+    PolarError
+        If values are missing, not finite or out of range; angles come twice, leave gaps of
+        more than 5 deg within 12 deg of 0 or do not span -1..4 deg; or units look wrong.
+    """
+
+    name: str
+    re: float
+    mach: float
+    alpha: FloatArray
+    cl: FloatArray
+    cd: FloatArray
+    cm: FloatArray
+    n_crit: float | None = None
+
+    def __post_init__(self) -> None:
+        if not self.re >= 1e3:
+            raise PolarError(f"Reynolds number must be at least 1000; it is {self.re:g} (in 1e6?)")
+        if not 0.0 <= self.mach <= 0.3:
+            raise PolarError(
+                f"Mach number must be within 0..0.3, the rest is corrected; it is {self.mach:g}"
+            )
+        degrees = np.degrees(self.alpha)
+        for name in ("alpha", "cl", "cd", "cm"):
+            values = getattr(self, name)
+            if values.shape != degrees.shape or not np.isfinite(values).all():
+                raise PolarError(f"{name} must be {degrees.size} finite numbers, one per angle")
+        if degrees.size < 5:
+            raise PolarError(f"a polar needs at least 5 angles; it has {degrees.size}")
+        steps = np.diff(degrees)
+        if not (steps > 0.0).all():
+            raise PolarError(f"alpha {degrees[steps.argmin()]:g} deg is given twice")
+        if not (self.cd > 0.0).all():
+            raise PolarError(
+                f"cd must be positive; it is {self.cd.min():g} at {degrees[self.cd.argmin()]:g} deg"
+            )
+        if self.cd.max() > 3.0:
+            raise PolarError(
+                f"cd must be below 3; it is {self.cd.max():g} at {degrees[self.cd.argmax()]:g} deg "
+                "(in drag counts?)"
+            )
+        slope = np.abs(np.diff(self.cl) / steps).max()
+        if slope > 1.0:
+            raise PolarError(f"cl changes by {slope:.3g} per degree: alpha seems to be in radians")
+        if degrees[0] > NEEDED_DEG[0] or degrees[-1] < NEEDED_DEG[1]:
+            raise PolarError(
+                f"alpha must span at least {NEEDED_DEG[0]:g}..{NEEDED_DEG[1]:g} deg; it spans "
+                f"{degrees[0]:g}..{degrees[-1]:g}"
+            )
+        wide = (steps > LARGEST_STEP_DEG + 1e-6) & (np.abs(degrees[:-1] + 0.5 * steps) < CLOSE_DEG)
+        if wide.any():
+            gap = int(wide.argmax())
+            raise PolarError(
+                f"alpha has a gap from {degrees[gap]:g} to {degrees[gap + 1]:g} deg; steps must "
+                f"not exceed {LARGEST_STEP_DEG:g} deg (the rows beyond it may be left out)"
+            )
+
+
+def table_from_polars(polars: Sequence[Polar]) -> PolarTable:
+    """Make the table of one section from its polars.
+
+    Parameters
+    ----------
+    polars : sequence of Polar
+        The same section at different Reynolds numbers, in any order, at least one.
+
+    Returns
+    -------
+    PolarTable
+        One section. A polar that goes round is taken at all angles; any other is continued by
+        `propmdao.aerodynamics.sections.polars.high_angle` past its last angle, at most 20 deg.
+
+    Raises
+    ------
+    PolarError
+        If there is no polar or a Reynolds number comes twice.
+    """
+    if not polars:
+        raise PolarError("a table needs at least one polar")
+    ordered = sorted(polars, key=lambda polar: polar.re)
+    for one, other in zip(ordered, ordered[1:], strict=False):
+        if other.re < 1.01 * one.re:
+            raise PolarError(
+                f"Reynolds numbers of '{one.name}' and '{other.name}' are equal: {one.re:g}"
+            )
+    rows = np.stack([_at_all_angles(polar) for polar in ordered], axis=1)
+    log_re = np.log([polar.re for polar in ordered])
+    if log_re.size == 1:
+        # A table interpolates between two: the one polar holds at all Reynolds numbers.
+        log_re, rows = log_re + [-0.01, 0.01], np.repeat(rows, 2, axis=1)
+    return PolarTable(jnp.asarray(ALPHA), jnp.asarray(log_re), jnp.asarray(rows[None]))
+
+
+def _at_all_angles(polar: Polar) -> FloatArray:
+    """cl, ln(cd), cm at `ALPHA`, (3, n_alpha)."""
+    degrees = np.degrees(polar.alpha)
+    given = np.stack([polar.cl, np.log(polar.cd), polar.cm])
+    if degrees[0] <= -FULL_CIRCLE_DEG and degrees[-1] >= FULL_CIRCLE_DEG:
+        turn = np.concatenate([degrees - 360.0, degrees, degrees + 360.0])
+        angle, kept = np.unique(np.round(turn, 6), return_index=True)
+        around: FloatArray = PchipInterpolator(angle, np.tile(given, 3)[:, kept], axis=1)(
+            np.degrees(ALPHA)
+        )
+        around[:, [0, -1]] = around[:, [-1, -1]]
+        return around
+    inside = np.clip(ATTACHED_DEG, degrees[0], degrees[-1])
+    cl, log_cd, cm = PchipInterpolator(degrees, given, axis=1)(inside)[:, None]
+    holds = np.flatnonzero((inside == ATTACHED_DEG) & (np.abs(ATTACHED_DEG) <= _LIMIT_DEG))
+    return all_angles(cl, np.exp(log_cd), cm, holds[:1], holds[-1:])[0]

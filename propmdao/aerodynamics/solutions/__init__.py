@@ -1,0 +1,1 @@
+"""Solutions of the lattice in its wake, and their results."""

@@ -1,0 +1,201 @@
+"""Circulation and forces of the lattice for a wake that is already known.
+
+Neumann condition at the collocation points, Kutta-Joukowski force on every bound and chordwise
+segment with the total local velocity (Katz and Plotkin 2001, sections 12.3 and 3.11), profile drag
+of the sections along the air that meets them.
+"""
+
+from __future__ import annotations
+
+import jax.numpy as jnp
+from jax import Array
+
+from propmdao.aerodynamics.lattice.rings import (
+    Rings,
+    blade_influence,
+    bound_segments,
+    chordwise_segments,
+    segment_circulation,
+    strip_middle,
+    vortex_rings,
+    wake_influence,
+)
+from propmdao.aerodynamics.lattice.strips import Strips, blade_strips
+from propmdao.aerodynamics.sections.laws import ViscousSections, section_laws
+from propmdao.aerodynamics.sections.recambering import (
+    SectionStates,
+    StripFlow,
+    section_states,
+    solve_recambering,
+)
+from propmdao.records.pytrees import Scalar, record
+
+
+@record
+class LatticeGeometry:
+    """What of the lattice does not change with the operating point.
+
+    Attributes
+    ----------
+    rings : Rings
+        Lattice of blade 1.
+    strips : Strips
+        Its sections.
+    points : (n_panels + n_segments, 3) array
+        Collocation points, then points of the bound and chordwise segments' forces [m].
+    segment : (n_segments, 3) array
+        Bound, then chordwise segments, in the direction of positive circulation [m].
+    influence : (3, nc, ns, n_panels + n_segments) array
+        Velocity at the points per unit circulation of the rings of all blades, without
+        wake [1/m].
+    """
+
+    rings: Rings
+    strips: Strips
+    points: Array
+    segment: Array
+    influence: Array
+
+
+@record
+class LatticeLoads:
+    """Loads of blade 1.
+
+    Attributes
+    ----------
+    circulation : (nc, ns) array
+        Circulation of the rings [m^2/s].
+    position : (n_segments + ns, 3) array
+        Where the forces act: bound segments (nc * ns) first, then chordwise (nc * (ns + 1)), then
+        the quarter points of the sections [m].
+    force : (n_segments + ns, 3) array
+        Force on the blade; that on the sections is profile drag [N].
+    sections : SectionStates
+        How the sections work.
+    """
+
+    circulation: Array
+    position: Array
+    force: Array
+    sections: SectionStates
+
+    @property
+    def thrust(self) -> Array:
+        """Thrust of the blade [N]."""
+        return self.force[:, 2].sum()
+
+    @property
+    def torque(self) -> Array:
+        """Shaft torque the blade needs [N m]."""
+        x, y = self.position[:, 0], self.position[:, 1]
+        return -(x * self.force[:, 1] - y * self.force[:, 0]).sum()
+
+
+def lattice_geometry(nodes: Array, n_blades: int, radius: Scalar) -> LatticeGeometry:
+    """Rings, points and the part of the influence that no wake changes.
+
+    Parameters
+    ----------
+    nodes : (nc + 1, ns + 1, 3) array
+        Corner points of the lattice of blade 1 [m].
+    n_blades : int
+        Number of equally spaced blades.
+    radius : float
+        Tip radius [m].
+
+    Returns
+    -------
+    LatticeGeometry
+        The lattice.
+    """
+    rings = vortex_rings(nodes)
+    (root, tip), (ahead, behind) = bound_segments(rings), chordwise_segments(rings)
+    f = jnp.asarray(strip_middle(nodes.shape[1] - 1))[None, :, None]
+    on_bound = (1.0 - f) * root + f * tip
+    on_chordwise = 0.5 * (ahead + behind)
+    points = jnp.concatenate(
+        [rings.collocation, on_bound.reshape(-1, 3), on_chordwise.reshape(-1, 3)]
+    )
+    segment = jnp.concatenate([(tip - root).reshape(-1, 3), (behind - ahead).reshape(-1, 3)])
+    influence = blade_influence(points, rings, n_blades, radius)
+    return LatticeGeometry(rings, blade_strips(nodes, rings, radius), points, segment, influence)
+
+
+def loads_with_wake(
+    lattice: LatticeGeometry,
+    wake_nodes: Array,
+    wake_core_radius: Array,
+    rotation_speed: Scalar,
+    speed: Scalar,
+    induced_velocity: Scalar,
+    density: Scalar,
+    sections: ViscousSections | None,
+) -> LatticeLoads:
+    """Solve for the circulation in a given wake and take the forces.
+
+    Parameters
+    ----------
+    lattice : LatticeGeometry
+        Lattice of blade 1.
+    wake_nodes : (ns + 1, n_blades, n_nodes, 3) array
+        Trailing filaments of all blades [m].
+    wake_core_radius : (n_nodes - 1,) array
+        Core radius along the filaments [m].
+    rotation_speed, speed, induced_velocity, density : float
+        Rotation speed [rad/s], axial flight speed, induced velocity at the disk [m/s], air density
+        [kg/m^3].
+    sections : ViscousSections or None
+        Polars that the lattice is held to; None for inviscid flow.
+
+    Returns
+    -------
+    LatticeLoads
+        Loads of blade 1.
+    """
+    nc, ns = lattice.influence.shape[1:3]
+    points, normal, strips = lattice.points, lattice.rings.normal, lattice.strips
+    n_panels = nc * ns
+    by_wake = wake_influence(points, wake_nodes, wake_core_radius)
+    influence = lattice.influence.at[:, -1].add(by_wake).reshape(3, n_panels, -1)
+
+    # Velocity of the air relative to the turning and climbing blade: -Omega x r - V.
+    x, y = points[:, 0], points[:, 1]
+    apparent = jnp.stack([rotation_speed * y, -rotation_speed * x, jnp.full_like(x, -speed)])
+    downwash = (influence[:, :, :n_panels] * normal.T[:, None, :]).sum(axis=0)
+    onset = (apparent[:, :n_panels] * normal.T).sum(axis=0)
+
+    turning, axial_speed = rotation_speed * strips.radius, speed + induced_velocity
+    relative_speed = jnp.hypot(turning, axial_speed)
+    recambered = jnp.tile(jnp.diag(relative_speed), (nc, 1))
+    unit = jnp.linalg.solve(downwash.T, -jnp.column_stack([onset, recambered]))
+    circulation, response = unit[:, 0], unit[:, 1:]
+    # The last rings carry the circulation of their whole strip.
+    strip_flow = StripFlow(strips, relative_speed, circulation[-ns:], response[-ns:])
+    recambering, laws = jnp.zeros(ns), None
+    if sections is not None:
+        laws = section_laws(strips, turning, axial_speed, density, sections)
+        recambering = solve_recambering(strip_flow, laws)
+        circulation = circulation + response @ recambering
+    states = section_states(strip_flow, recambering, laws)
+
+    induced = jnp.tensordot(circulation, influence[:, :, n_panels:], axes=(0, 1))
+    velocity = (apparent[:, n_panels:] + induced).T
+    circulation = circulation.reshape(nc, ns)
+    strength = jnp.concatenate([g.ravel() for g in segment_circulation(circulation)])
+    lift = density * strength[:, None] * jnp.cross(velocity, lattice.segment)
+    return LatticeLoads(
+        circulation,
+        jnp.concatenate([points[n_panels:], strips.quarter_chord]),
+        jnp.concatenate([lift, _profile_drag(strips, states, density)]),
+        states,
+    )
+
+
+def _profile_drag(strips: Strips, states: SectionStates, density: Scalar) -> Array:
+    """Drag of the sections, along the air that meets them: (ns, 3) [N]."""
+    alpha = states.angle_of_attack[:, None]
+    wind = jnp.cos(alpha) * strips.backward + jnp.sin(alpha) * strips.upward
+    area = strips.chord * strips.width
+    return (0.5 * density * states.relative_speed**2 * area * states.drag_coefficient)[
+        :, None
+    ] * wind

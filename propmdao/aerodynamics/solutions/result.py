@@ -1,0 +1,107 @@
+"""The steady solution: what it holds, why it may not have converged, loads of its strips."""
+
+from __future__ import annotations
+
+import jax.numpy as jnp
+import numpy as np
+from jax import Array
+
+from propmdao.aerodynamics.lattice.strips import Strips
+from propmdao.aerodynamics.sections.recambering import SectionStates
+from propmdao.aerodynamics.solutions.lattice_loads import LatticeLoads
+from propmdao.records.loads import PointLoads
+from propmdao.records.pytrees import record
+
+SETTLED = 1.0e-6  # difference of lift coefficients of lattice and polars that counts as none
+
+
+@record
+class SteadySolution:
+    """Loads of the propeller in steady axial flow.
+
+    Attributes
+    ----------
+    thrust, torque : float
+        Of all blades [N], [N m].
+    induced_velocity : float
+        At the disk, by which the wake is transported [m/s].
+    circulation : (nc, ns) array
+        Circulation of the rings of a blade [m^2/s].
+    strip_thrust, strip_torque : (ns,) array
+        Share of each strip of a blade; divide by the strip's width for loads per span
+        [N], [N m].
+    point_loads : PointLoads
+        Forces of blade 1 on the fluid, for acoustics.
+    strips, sections : Strips, SectionStates
+        Sections of blade 1, and how they work.
+    converged : bool
+        Whether thrust and induced velocity agree with momentum theory, and lattice and polars on
+        the lift of every section; `failure` says what does not.
+    """
+
+    thrust: Array
+    torque: Array
+    induced_velocity: Array
+    circulation: Array
+    strip_thrust: Array
+    strip_torque: Array
+    point_loads: PointLoads
+    strips: Strips
+    sections: SectionStates
+    converged: Array
+
+
+def failure(solution: SteadySolution) -> str | None:
+    """Say why a solution did not converge; call it outside ``jit``.
+
+    Parameters
+    ----------
+    solution : SteadySolution
+        The solution.
+
+    Returns
+    -------
+    str or None
+        One line, or None where it converged.
+    """
+    if solution.converged:
+        return None
+    residual = np.abs(np.asarray(solution.sections.residual))
+    worst = int(np.nanargmax(residual)) if np.isfinite(residual).any() else 0
+    if not residual[worst] < SETTLED:
+        return (
+            f"lift coefficients of lattice and polar differ by {residual[worst]:.2g} at r/R "
+            f"{float(solution.strips.r_over_R[worst]):.2f}"
+        )
+    return (
+        f"thrust {float(solution.thrust):.4g} N and induced velocity "
+        f"{float(solution.induced_velocity):.4g} m/s do not agree with momentum theory: "
+        "beyond its windmilling limit"
+    )
+
+
+def strip_loads(loads: LatticeLoads) -> tuple[Array, Array]:
+    """Thrust and torque of each strip; a chordwise segment belongs half to either side.
+
+    Parameters
+    ----------
+    loads : LatticeLoads
+        Loads of blade 1, ns strips.
+
+    Returns
+    -------
+    thrust, torque : (ns,) array
+        They add up to the blade's [N], [N m].
+    """
+    nc, ns = loads.circulation.shape
+    x, y = loads.position[:, 0], loads.position[:, 1]
+    torque = y * loads.force[:, 0] - x * loads.force[:, 1]
+
+    def by_strip(of_segment: Array) -> Array:
+        bound = of_segment[: nc * ns].reshape(nc, ns).sum(axis=0)
+        edge = of_segment[nc * ns : -ns].reshape(nc, ns + 1).sum(axis=0)
+        # The outermost edges have one strip only.
+        share = edge * jnp.full(ns + 1, 0.5).at[jnp.array([0, ns])].set(1.0)
+        return bound + share[:-1] + share[1:] + of_segment[-ns:]
+
+    return by_strip(loads.force[:, 2]), by_strip(torque)

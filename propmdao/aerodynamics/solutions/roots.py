@@ -1,0 +1,130 @@
+"""Scalar roots that keep inside their bracket and carry exact derivatives."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import partial
+from typing import Any, TypeVar
+
+import jax
+import jax.numpy as jnp
+from jax import Array
+
+from propmdao.records.pytrees import Scalar
+
+_MAX_EVALUATIONS = 60
+
+Params = TypeVar("Params")
+Results = TypeVar("Results")
+Notes = TypeVar("Notes")
+
+
+def decreasing_root(
+    residual: Callable[[Array], tuple[Array, Results]],
+    low: Scalar,
+    high: Scalar,
+    guess: Scalar,
+    tolerance: float,
+) -> tuple[Array, Results]:
+    """Root of a decreasing function by the secant method, kept inside a shrinking bracket.
+
+    Parameters
+    ----------
+    residual : callable
+        Continuous function of slope about -1, positive at `low` and negative at `high`, and what
+        was computed on the way to it, any pytree; the ends are not evaluated.
+    low, high, guess : float
+        Bracket and first trial.
+    tolerance : float
+        Relative error allowed. For a slope of about -1 a secant step leaves an error of about the
+        product of the last two steps, and the first step one below the residual.
+
+    Returns
+    -------
+    root, results : float, pytree
+        The root and the results there; where none is found in 60 evaluations, the last trial.
+        `at_root` makes them differentiable.
+    """
+
+    def unfinished(state: Any) -> Array:
+        return (state[0] < _MAX_EVALUATIONS) & ~state[-1]
+
+    def step(state: Any) -> Any:
+        count, lo, hi, x, x_before, f_before, _, last, _ = state
+        f, results = residual(x)
+        lo, hi = jnp.where(f > 0.0, x, lo), jnp.where(f > 0.0, hi, x)
+        # The first step has no secant: bisecting would throw the guess away, so move as if the
+        # slope were -1, which is that of x = g(x) with a constant g.
+        slope = jnp.where(count == 0, -1.0, (f - f_before) / (x - x_before))
+        trial = x - f / slope
+        inside = (trial > lo) & (trial < hi)
+        following = jnp.where(inside | (f == 0.0), trial, 0.5 * (lo + hi))
+        close = jnp.abs((following - x) * (x - x_before)) <= tolerance * following**2
+        close = close | (jnp.abs(f) <= tolerance * jnp.abs(following))
+        # Where the next trial will do, it is evaluated once more, for the results there.
+        following = jnp.where(last, x, following)
+        return count + 1, lo, hi, following, x, f, results, close, last
+
+    none, no = jnp.asarray(jnp.inf), jnp.asarray(False)
+    ends = (jnp.asarray(value, float) for value in (low, high, guess))
+    start: Any = (0, *ends, none, none, empty(residual, guess)[1], no, no)
+    state = jax.lax.while_loop(unfinished, step, start)
+    return state[3], state[6]
+
+
+def empty(function: Callable[..., Results], *arguments: Any) -> Results:
+    """Zeros in the shape of a function's results, to start a loop with."""
+    shapes = jax.eval_shape(function, *(jnp.asarray(x, float) for x in arguments))
+    return jax.tree.map(lambda shape: jnp.zeros(shape.shape, shape.dtype), shapes)
+
+
+def at_root(
+    solve: Callable[[Params], tuple[Array, Results, Notes]],
+    evaluate: Callable[[Params, Array], Results],
+    residual: Callable[[Params, Array, Results], Array],
+    params: Params,
+) -> tuple[Array, Results, Notes]:
+    """Evaluate a model at the root of its residual, with the derivative of the implicit function.
+
+    With r(p, x) = 0 the root moves by dx = -(r_p dp) / r_x, and the results by their change at
+    fixed x plus their slope in x times dx. Nothing is differentiated through the iterations, and
+    the model is transposed once for root and results together.
+
+    Parameters
+    ----------
+    solve : callable
+        ``solve(params) -> (x, results, notes)`` finds the root, a scalar, by any means, and the
+        results there; notes on the search, a pytree of floats, are passed on without a derivative.
+        That it also has the results keeps the model from being compiled twice.
+    evaluate : callable
+        ``evaluate(params, x)`` gives the results, any pytree of floats.
+    residual : callable
+        ``residual(params, x, results)`` is zero at the root.
+    params : pytree
+        Everything that the three depend on: they may close over nothing that is traced.
+
+    Returns
+    -------
+    root, results, notes : float, pytree, pytree
+        The root, the results there, and what `solve` noted.
+    """
+
+    @jax.custom_jvp
+    def converged(params: Params) -> tuple[Array, Results, Notes]:
+        return solve(params)
+
+    @converged.defjvp
+    def derivative(primals: tuple[Params], tangents: tuple[Params]) -> tuple[Any, Any]:
+        x, results, notes = converged(*primals)
+
+        def model(params: Params, x: Array) -> tuple[Results, Array]:
+            results = evaluate(params, x)
+            return results, residual(params, x, results)
+
+        by_x = jax.jvp(partial(model, *primals), (x,), (jnp.ones_like(x),))[1]
+        by_params = jax.jvp(lambda p: model(p, x), primals, tangents)[1]
+        dx = -by_params[1] / by_x[1]
+        d_results = jax.tree.map(lambda d, slope: d + slope * dx, by_params[0], by_x[0])
+        return (x, results, notes), (dx, d_results, jax.tree.map(jnp.zeros_like, notes))
+
+    return converged(params)

@@ -1,0 +1,1 @@
+"""Velocities that vortex segments and filaments induce."""

@@ -1,0 +1,1 @@
+"""Where the wake goes: momentum theory, its law of transport, the ages of its nodes."""

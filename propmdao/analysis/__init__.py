@@ -1,0 +1,1 @@
+"""Where the disciplines meet: from a described propeller to loads and noise."""

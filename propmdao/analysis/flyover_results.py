@@ -1,0 +1,153 @@
+"""A flight past a microphone, and what is heard of it as levels."""
+
+from __future__ import annotations
+
+import dataclasses
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from propmdao.acoustics.kinematics.tracks import Sight
+from propmdao.acoustics.levels.decibels import level_db
+from propmdao.acoustics.levels.epnl import effective_perceived_noise_level
+from propmdao.acoustics.levels.perceived_noise import PERCEIVED_BANDS_HZ
+from propmdao.acoustics.levels.time_levels import sound_exposure_level_db
+from propmdao.acoustics.levels.weighting import level_dba
+from propmdao.analysis.self_noise import BANDS_HZ
+from propmdao.records.air import Air, require_known_air
+
+#: Of the levels [s], as in certification.
+STEP = 0.5
+PARTS = ("thickness", "loading", "broadband", "total")
+
+Floats = npt.NDArray[np.float64]
+
+
+@dataclasses.dataclass(frozen=True)
+class Flight:
+    """Level flight of a propeller, its axis along the path, past a microphone over hard ground.
+
+    Attributes
+    ----------
+    height : float
+        Of the propeller above the ground [m].
+    sideline : float
+        Of the microphone beside the track [m].
+    microphone_height : float
+        Above the ground [m]; 0: flush with it, 1.2 m in certification of large aeroplanes.
+    duration : float or None
+        How long it is heard [s]; by default until it is six times as far away as at its nearest,
+        20 s at least.
+    air : Air or None
+        That absorbs sound, if any does.
+
+    Raises
+    ------
+    ValueError
+        If the microphone is not between ground and propeller, or a value is out of range.
+    """
+
+    height: float
+    sideline: float = 0.0
+    microphone_height: float = 0.0
+    duration: float | None = None
+    air: Air | None = dataclasses.field(default_factory=Air)
+
+    def __post_init__(self) -> None:
+        """Refuse what cannot be."""
+        if not 0.0 < self.height < np.inf:
+            raise ValueError(f"height of flight must be positive [m]; it is {self.height:g}")
+        if not np.isfinite(self.sideline):
+            raise ValueError(f"sideline distance must be finite [m]; it is {self.sideline:g}")
+        if not 0.0 <= self.microphone_height < self.height:
+            raise ValueError(
+                f"microphone must be between the ground and the flight at {self.height:g} m; it is"
+                f" at {self.microphone_height:g} m"
+            )
+        if self.duration is not None and not 4 * STEP <= self.duration < np.inf:
+            raise ValueError(f"duration must be {4 * STEP:g} s or more; it is {self.duration:g}")
+        if self.air is not None:
+            require_known_air(self.air)
+
+    @property
+    def miss_distance(self) -> float:
+        """Shortest distance between microphone and propeller [m]."""
+        return float(np.hypot(self.height - self.microphone_height, self.sideline))
+
+
+@dataclasses.dataclass(frozen=True)
+class Flyover:
+    """What the microphone hears.
+
+    Attributes
+    ----------
+    time : (n_steps,) array
+        Middle of steps of `STEP`; the propeller is overhead at 0 [s].
+    mean_square : dict of str to (n_steps, n_bands) array
+        In the bands `propmdao.analysis.self_noise.BANDS_HZ`, by `PARTS` [Pa^2].
+    sight : Sight
+        From where it is heard, each array (1, n_steps).
+    pressure : (n_times,) array or None
+        Record at `SAMPLE_RATE`, tones and broadband noise, where asked for [Pa].
+    """
+
+    time: Floats
+    mean_square: dict[str, Floats]
+    sight: Sight
+    pressure: Floats | None
+
+    def level_dba(self, part: str = "total") -> Floats:
+        """A-weighted level of each step, (n_steps,) [dBA].
+
+        Parameters
+        ----------
+        part : str
+            Of `PARTS`.
+
+        Returns
+        -------
+        (n_steps,) array
+            Levels [dBA].
+        """
+        return np.asarray(level_dba(BANDS_HZ, self.mean_square[part]))
+
+    def to_dict(self) -> dict[str, Any]:
+        """Levels as plain numbers.
+
+        Returns
+        -------
+        dict
+            levels: of each part lamax_dba, the loudest step, and sel_dba; epnl and pnltm of all
+            [EPNdB], [PNdB], None where there is none for the reason epnl_failure; history: time,
+            distance, elevation_deg, doppler and levels of each step.
+        """
+        levels = {part: self.level_dba(part) for part in PARTS}
+        perceived: dict[str, Any] = {"epnl": None, "pnltm": None, "epnl_failure": None}
+        bands = np.asarray(level_db(self.mean_square["total"]))[:, : PERCEIVED_BANDS_HZ.size]
+        try:
+            effective = effective_perceived_noise_level(bands, STEP)
+            perceived |= {"epnl": effective.epnl, "pnltm": effective.pnltm}
+        except ValueError as reason:
+            perceived["epnl_failure"] = str(reason)
+        seen = {
+            "time": self.time,
+            "distance": np.asarray(self.sight.distance[0]),
+            "elevation_deg": np.asarray(self.sight.elevation_deg[0]),
+            "doppler": np.asarray(self.sight.doppler[0]),
+            **{f"{part}_dba": level for part, level in levels.items()},
+        }
+        return {
+            "levels": {
+                part: {
+                    "lamax_dba": float(level.max()),
+                    "sel_dba": float(sound_exposure_level_db(level, STEP)),
+                }
+                for part, level in levels.items()
+            },
+            **perceived,
+            "history": [
+                dict(zip(seen, map(float, row), strict=True))
+                for row in zip(*seen.values(), strict=True)
+            ],
+        }

@@ -1,0 +1,86 @@
+"""The sound of an analysis: pressure at its observers over seconds, tones and broadband noise."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import numpy.typing as npt
+
+from propmdao.acoustics.sounds.recordings import (
+    SAMPLE_RATE,
+    broadband_record,
+    common_full_scale,
+    tone_record,
+)
+from propmdao.analysis.results import Analysis
+from propmdao.analysis.self_noise import BANDS_HZ
+from propmdao.formats.wav import Recording, write_wav
+
+MAX_CHANNELS = 16
+
+
+def pressure_record(analysis: Analysis, duration: float) -> npt.NDArray[np.float64]:
+    """Pressure at every observer, to be repeated seamlessly.
+
+    Parameters
+    ----------
+    analysis : Analysis
+        With or without broadband noise.
+    duration : float
+        About how long [s]: as many blade passages as are nearest to it.
+
+    Returns
+    -------
+    (n_observers, n_times) array
+        At `SAMPLE_RATE` [Pa]. Noise is random, the same each time, and that of one observer is not
+        that of another.
+
+    Raises
+    ------
+    ValueError
+        If the rotor stands still, or the duration is too short for the lowest band.
+    """
+    tones = analysis.tones
+    record = tone_record(tones.frequency_hz, tones.total, duration)
+    if analysis.broadband is not None:
+        power = np.asarray(analysis.broadband.total)
+        record = record + broadband_record(BANDS_HZ, power, record.shape[-1])
+    return record
+
+
+def write_sound(
+    path: str | Path, analysis: Analysis, duration: float, full_scale: float | None = None
+) -> Recording:
+    """Write a sound file of an analysis, a channel for each observer.
+
+    Parameters
+    ----------
+    path : str or Path
+        WAV file.
+    analysis : Analysis
+        With or without broadband noise.
+    duration : float
+        About how long [s].
+    full_scale : float, optional
+        Pressure of the largest number in the file [Pa]; by default the highest peak, rounded up.
+
+    Returns
+    -------
+    Recording
+        The file and its calibration.
+
+    Raises
+    ------
+    ValueError
+        If there are more than `MAX_CHANNELS` observers, or as in `pressure_record` and `write_wav`.
+    """
+    if len(analysis.observers) > MAX_CHANNELS:
+        raise ValueError(
+            f"a sound file is of at most {MAX_CHANNELS} observers; there are"
+            f" {len(analysis.observers)}"
+        )
+    record = pressure_record(analysis, duration)
+    if full_scale is None:
+        full_scale = common_full_scale(record)
+    return write_wav(path, record, full_scale, SAMPLE_RATE)

@@ -1,0 +1,236 @@
+"""Command line: ``propmdao analyze``."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+import warnings
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from propmdao.commands.json_output import print_json
+from propmdao.commands.observer_options import (
+    add_broadband,
+    add_observers,
+    add_surroundings,
+    observers_of,
+    require_broadband,
+    surroundings_of,
+)
+from propmdao.commands.options import (
+    add_command,
+    add_operating_point,
+    add_propeller,
+    number,
+)
+from propmdao.commands.output_files import require_figures, require_writable, save_figures
+
+if TYPE_CHECKING:
+    from propmdao.aerodynamics.sections.polars.table import PolarTable
+    from propmdao.analysis.single_point import Analysis
+
+DESCRIPTION = """\
+Thrust, torque and noise of a propeller in hover (speed 0) or axial flight.
+
+Steady vortex lattice held to the polars of the blade's sections, with a wake carried by the flow it
+induces, then tones by Farassat's Formulation 1A: thickness and loading noise of the full blade
+surface, heard by observers that fly along. With --broadband also the self-noise of the blades
+(Brooks, Pope and Marcolini). Ground may reflect the sound, and air absorb it.
+
+The polars that ship are of E63, Clark-Y, their blends and NACA 4-digit sections; others are given
+with --polar, or made where NeuralFoil is installed.
+"""
+
+EXAMPLES = """\
+examples:
+  propmdao analyze apcsf_11x4.7 --rpm 4200 --speed 8
+  propmdao analyze apcsf_11x4.7 --thrust 1.5 --speed 8 --arc 1.905 -45 --broadband
+  propmdao analyze my_blade.toml --rpm 3000:5000:500 --arc 1.905 -45 0 45 --json
+  propmdao analyze apcsf_11x4.7 --rpm 4200 --arc 1.905 -45 --broadband --wav hover.wav
+  propmdao analyze apcsf_11x4.7 --rpm 4200 --ground 10 --grid 0:40:5 0 -10 --absorption
+  propmdao analyze apcsf_11x4.7 --rpm 4200 --speed 8 --level --hemisphere 20 10 --figures results
+  propmdao analyze my_blade.toml --rpm 4200 --polar sg6042 sg6042_re50k.txt sg6042_re100k.txt
+
+CT = T/(rho n^2 D^4), CQ = Q/(rho n^2 D^5), CP = 2 pi CQ, J = V/(n D), eta = J CT/CP, n in rev/s.
+Levels are in dB re 20 uPa, rms. SI units throughout. Exit status: 0, or 2 with one line on stderr.
+"""
+
+
+def add_analyze(commands: argparse._SubParsersAction[Any]) -> None:
+    """Add the command to a command line.
+
+    Parameters
+    ----------
+    commands : argparse subparsers
+        What it is added to.
+    """
+    command = add_command(
+        commands,
+        "analyze",
+        _analyze,
+        "thrust, torque and noise at given rpm or thrust",
+        DESCRIPTION,
+        EXAMPLES,
+    )
+    add_propeller(command)
+    add_operating_point(command, several_rpm=True)
+    command.add_argument(
+        "--no-stall-delay",
+        action="store_true",
+        help="let the sections stall as in two dimensions; by default rotation delays it"
+        " (Du and Selig)",
+    )
+    command.add_argument(
+        "--polar",
+        action="append",
+        nargs="+",
+        default=[],
+        metavar=("AIRFOIL", "FILE"),
+        help="polars of an airfoil of the propeller: files of XFOIL or XFLR5, one per Reynolds"
+        " number, or one C81 file (ending .c81); may be repeated for other airfoils",
+    )
+    add_broadband(command)
+    command.add_argument("--json", action="store_true", help="print JSON instead of tables")
+    add_observers(command)
+    add_surroundings(command)
+    group = command.add_argument_group("sound and figures", "Of one operating point.")
+    group.add_argument(
+        "--wav",
+        type=Path,
+        metavar="FILE.wav",
+        help="sound of the observers, a channel for each, to be repeated without a click",
+    )
+    group.add_argument(
+        "--seconds", type=number, default=5.0, metavar="S", help="its length [s], default 5"
+    )
+    group.add_argument(
+        "--full-scale",
+        type=number,
+        metavar="PA",
+        help="pressure of its largest number [Pa]: give two blades the same one to compare them by"
+        " ear; default the highest peak, rounded up",
+    )
+    group.add_argument(
+        "--figures",
+        type=Path,
+        metavar="FOLDER",
+        help="spectrum, third octaves and pressure at the first observer, directivity of an arc,"
+        " map of a hemisphere, as PNG",
+    )
+
+
+def _analyze(options: argparse.Namespace) -> None:
+    _check(options)
+    observers = observers_of(options)
+    surroundings = surroundings_of(options)
+    # Slow to import, so only once the arguments are known to be good.
+    from propmdao.aerodynamics.sections.polars.propeller_polars import polars_for
+    from propmdao.analysis.single_point import analyze
+    from propmdao.formats.propellers import load_propeller
+
+    propeller = load_propeller(options.propeller)
+    own = _own_polars(options.polar)
+    names = [name for _, name in propeller.airfoils]
+    for airfoil in own:
+        if airfoil not in [*names, *(Path(name).stem for name in names)]:
+            raise ValueError(
+                f"--polar {airfoil}: {propeller.name} has no such airfoil; it has"
+                f" {', '.join(dict.fromkeys(names))}"
+            )
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        polars = None if options.inviscid else polars_for(propeller, own)
+        found = [
+            analyze(
+                propeller,
+                rpm=rpm,
+                thrust=options.thrust,
+                speed=options.speed,
+                density=options.rho,
+                twist_offset_deg=options.twist_offset,
+                viscous=not options.inviscid,
+                stall_delay=not options.no_stall_delay,
+                polars=polars,
+                broadband=options.broadband,
+                trip=options.trip,
+                observers=observers,
+                surroundings=surroundings,
+            )
+            for rpm in _rpm_values(options.rpm)
+        ]
+    for message in dict.fromkeys(str(warning.message) for warning in caught):
+        print(f"propmdao analyze: warning: {message}", file=sys.stderr)
+    analyses = [one.to_dict() for one in found]
+    analyses[0] |= _write(options, found[0], propeller.name)
+    if options.json:
+        print_json(analyses if _is_list(options.rpm) else analyses[0])
+    else:
+        from propmdao.commands import report
+
+        report.print_analyses(propeller, options.twist_offset, analyses, str(surroundings))
+
+
+def _check(options: argparse.Namespace) -> None:
+    """Refuse options that do not go together, before the work."""
+    if options.inviscid and (options.polar or options.no_stall_delay):
+        raise ValueError("--inviscid has no sections: --polar and --no-stall-delay do not go along")
+    require_broadband(options)
+    placed = [*options.arc, *options.point, *options.circle, *options.hemisphere, *options.grid]
+    for option, value in (("--wav", options.wav), ("--figures", options.figures)):
+        if value is None:
+            continue
+        if _is_list(options.rpm):
+            raise ValueError(f"{option} is of one operating point: give one --rpm")
+        if not placed:
+            raise ValueError(f"{option} needs observers, as with --arc 1.905 -45")
+    if options.full_scale is not None and options.wav is None:
+        raise ValueError("--full-scale is of a sound file: add --wav FILE.wav")
+    if options.wav is not None:
+        require_writable("--wav", options.wav, ".wav")
+    if options.figures is not None:
+        require_figures("--figures")
+
+
+def _write(options: argparse.Namespace, analysis: Analysis, name: str) -> dict[str, Any]:
+    """Write sound and figures; what was written."""
+    written: dict[str, Any] = {}
+    if options.wav is not None:
+        from propmdao.analysis.sounds import write_sound
+
+        sound = write_sound(options.wav, analysis, options.seconds, options.full_scale)
+        written["sound"] = sound._asdict() | {"path": str(sound.path)}
+    if options.figures is not None:
+        from propmdao.figures.analysis_figures import analysis_figures
+
+        figures = analysis_figures(analysis, name, options.hemisphere)
+        written["figures"] = save_figures(options.figures, figures)
+    return written
+
+
+def _own_polars(given: Sequence[Sequence[str]]) -> dict[str, PolarTable]:
+    """Tables of the files of every ``--polar``, by airfoil."""
+    from propmdao.formats.polars import read_c81, read_polars
+
+    tables = {}
+    for airfoil, *files in given:
+        if not files:
+            raise ValueError(f"--polar {airfoil} has no file")
+        if airfoil in tables:
+            raise ValueError(f"--polar {airfoil} is given twice: name all of its files at once")
+        c81 = [file for file in files if file.lower().endswith(".c81")]
+        if c81 and len(files) > 1:
+            raise ValueError(f"--polar {airfoil}: a C81 file stands alone; there is also {files}")
+        tables[airfoil] = read_c81(c81[0]) if c81 else read_polars(*files)
+    return tables
+
+
+def _rpm_values(given: list[float | list[float]] | None) -> list[float | None]:
+    """All rpm in the order given; one None where thrust is given instead."""
+    if given is None:
+        return [None]
+    return [rpm for item in given for rpm in (item if isinstance(item, list) else [item])]
+
+
+def _is_list(given: list[float | list[float]] | None) -> bool:
+    return given is not None and (len(given) > 1 or isinstance(given[0], list))

@@ -1,0 +1,195 @@
+"""Command line: ``propmdao flyover``."""
+
+from __future__ import annotations
+
+import argparse
+import csv
+import dataclasses
+import sys
+import warnings
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from propmdao.commands.json_output import print_json
+from propmdao.commands.observer_options import add_absorption, add_trip, air_of
+from propmdao.commands.options import (
+    add_command,
+    add_operating_point,
+    add_propeller,
+    number,
+)
+from propmdao.commands.output_files import require_figures, require_writable, save_figures
+
+if TYPE_CHECKING:
+    from propmdao.analysis.flyover_results import Flyover
+
+DESCRIPTION = """\
+What a microphone on the ground hears of a propeller in level flight, its axis along the path:
+loudest A-weighted level, SEL and EPNL, level against time, sound.
+
+Tones come as a pressure record with its Doppler shift, broadband self-noise in third octaves that
+shift with it; hard ground reflects, air absorbs on the way. Steps are half seconds.
+"""
+
+EXAMPLES = """\
+examples:
+  propmdao flyover apcsf_11x4.7 --thrust 1.2 --speed 8 --height 20
+  propmdao flyover apcsf_11x4.7 --rpm 4200 --speed 8 --height 20 --sideline 30 --trip heavy
+  propmdao flyover apcsf_11x4.7 --rpm 4200 --speed 8 --height 50 --microphone 1.2 --wav over.wav
+
+Levels: dBA re 20 uPa; SEL re (20 uPa)^2 s; EPNL in EPNdB. Exit status: 0, or 2 with one line on
+stderr.
+"""
+
+
+def add_flyover(commands: argparse._SubParsersAction[Any]) -> None:
+    """Add the command to a command line.
+
+    Parameters
+    ----------
+    commands : argparse subparsers
+        What it is added to.
+    """
+    command = add_command(
+        commands,
+        "flyover",
+        _flyover,
+        "level against time, SEL and EPNL on the ground",
+        DESCRIPTION,
+        EXAMPLES,
+    )
+    add_propeller(command)
+    add_operating_point(command)
+    command.add_argument(
+        "--height", type=number, required=True, metavar="M", help="of the propeller over ground [m]"
+    )
+    command.add_argument(
+        "--sideline",
+        type=number,
+        default=0.0,
+        metavar="M",
+        help="distance of the microphone from the track [m], default 0; positive on the left",
+    )
+    command.add_argument(
+        "--microphone",
+        type=number,
+        default=0.0,
+        metavar="M",
+        help="its height above the ground [m], default 0: flush with it; 1.2 in certification",
+    )
+    command.add_argument(
+        "--duration",
+        type=number,
+        metavar="S",
+        help="of what is heard [s]; default until six times the shortest distance, 20 s at least",
+    )
+    add_trip(command)
+    add_absorption(command)
+    command.add_argument(
+        "--no-absorption", action="store_true", help="without absorption, which is on by default"
+    )
+    command.add_argument("--json", action="store_true", help="print JSON instead of tables")
+    command.add_argument(
+        "--out", type=Path, metavar="FILE.csv", help="levels, distance and elevation of each step"
+    )
+    command.add_argument(
+        "--figures", type=Path, metavar="FOLDER", help="level against time, as PNG"
+    )
+    command.add_argument("--wav", type=Path, metavar="FILE.wav", help="what the microphone hears")
+    command.add_argument(
+        "--full-scale",
+        type=number,
+        metavar="PA",
+        help="pressure of its largest number [Pa]; default the highest peak, rounded up",
+    )
+
+
+def _flyover(options: argparse.Namespace) -> None:
+    if options.no_absorption and options.absorption is not None:
+        raise ValueError("--no-absorption and --absorption do not go along")
+    if options.full_scale is not None and options.wav is None:
+        raise ValueError("--full-scale is of a sound file: add --wav FILE.wav")
+    for option, path, ending in (("--out", options.out, ".csv"), ("--wav", options.wav, ".wav")):
+        if path is not None:
+            require_writable(option, path, ending)
+    if options.figures is not None:
+        require_figures("--figures")
+    if not options.speed > 0.0:
+        raise ValueError(f"--speed of a flyover must be positive [m/s]; it is {options.speed:g}")
+    # Slow to import, so only once the arguments are known to be good.
+    from propmdao.analysis.flyover_results import Flight
+    from propmdao.formats.propellers import load_propeller
+
+    if options.absorption is None:
+        options.absorption = []
+    flight = Flight(
+        options.height,
+        options.sideline,
+        options.microphone,
+        options.duration,
+        None if options.no_absorption else air_of(options),
+    )
+    propeller = load_propeller(options.propeller)
+    turned = propeller.beta_deg + options.twist_offset
+    propeller = dataclasses.replace(propeller, beta_deg=turned)
+    from propmdao.analysis.flyovers import fly_over
+    from propmdao.analysis.single_point import analyze
+
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        analysis = analyze(
+            propeller,
+            rpm=options.rpm,
+            thrust=options.thrust,
+            speed=options.speed,
+            density=options.rho,
+            viscous=not options.inviscid,
+        )
+    for message in dict.fromkeys(str(warning.message) for warning in caught):
+        print(f"propmdao flyover: warning: {message}", file=sys.stderr)
+    heard = fly_over(propeller, analysis, flight, trip=options.trip, sound=options.wav is not None)
+    point = analysis.to_dict()
+    for key in ("observers", "surroundings", "trip"):
+        del point[key]
+    result = point | {"flight": dataclasses.asdict(flight), "trip": options.trip}
+    result |= heard.to_dict() | _write(options, heard, flight.miss_distance)
+    if options.json:
+        print_json(result)
+    else:
+        from propmdao.commands import report
+
+        report.print_flyover(propeller, options.twist_offset, result)
+
+
+def _write(options: argparse.Namespace, heard: Flyover, distance: float) -> dict[str, Any]:
+    """Write the files asked for; what was written."""
+    written: dict[str, Any] = {}
+    if options.out is not None:
+        rows = heard.to_dict()["history"]
+        try:
+            with options.out.open("w", newline="", encoding="utf-8") as stream:
+                writer = csv.DictWriter(stream, rows[0])
+                writer.writeheader()
+                writer.writerows({key: f"{x:.4f}" for key, x in row.items()} for row in rows)
+        except OSError as error:
+            raise ValueError(f"--out {options.out}: {error.strerror or error}") from None
+    if heard.pressure is not None:
+        from propmdao.acoustics.sounds.recordings import common_full_scale
+        from propmdao.formats.wav import write_wav
+
+        full_scale = options.full_scale
+        if full_scale is None:
+            full_scale = common_full_scale(heard.pressure)
+        sound = write_wav(options.wav, heard.pressure, full_scale)
+        written["sound"] = sound._asdict() | {"path": str(sound.path)}
+    if options.figures is not None:
+        from propmdao.analysis.flyover_results import PARTS, STEP
+        from propmdao.analysis.single_point import SOUND_SPEED
+        from propmdao.figures import acoustic_plots
+
+        label = f"A-weighted level of {STEP:g} s, dB re 20 µPa"
+        levels = {part: heard.level_dba(part) for part in PARTS}
+        moments = {"heard from the nearest point": distance / SOUND_SPEED}
+        figure = acoustic_plots.level_history(heard.time, levels, label, moments)
+        written["figures"] = save_figures(options.figures, {"levels": figure})
+    return written

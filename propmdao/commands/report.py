@@ -1,0 +1,219 @@
+"""Tables for people: the catalogue, operating points, noise."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Sequence
+from typing import Any
+
+from rich import box
+from rich.console import Console
+from rich.table import Table
+
+from propmdao.propeller.description import Propeller
+
+# What the numbers leave out stands below them, where it is read.
+INVISCID = "Inviscid lattice: no profile drag, so torque and power are low and eta is high."
+TRIPPED = {"none": "untripped", "light": "lightly tripped", "heavy": "heavily tripped"}
+TONES_ONLY = "Tones only: with broadband noise (--broadband) it is louder, above all in dBA."
+
+
+def print_catalog(propellers: Iterable[Propeller]) -> None:
+    """Print a table of propellers: name, diameter, number of blades, airfoils.
+
+    Parameters
+    ----------
+    propellers : iterable of Propeller
+        One line each.
+    """
+    table = _table()
+    table.add_column("name", no_wrap=True)
+    table.add_column("diameter m", justify="right")
+    table.add_column("blades", justify="right")
+    table.add_column("airfoils, hub to tip")
+    for propeller in propellers:
+        airfoils = ", ".join(name for _, name in propeller.airfoils)
+        table.add_row(
+            propeller.name, f"{propeller.diameter:.4g}", str(propeller.n_blades), airfoils
+        )
+    console = Console()
+    console.print(table)
+    console.print("Where the numbers come from, and what is assumed: propmdao list --json")
+
+
+def print_analyses(
+    propeller: Propeller,
+    twist_offset_deg: float,
+    analyses: Sequence[dict[str, Any]],
+    surroundings: str,
+) -> None:
+    """Print the operating points of one propeller and the levels at their observers.
+
+    Parameters
+    ----------
+    propeller : Propeller
+        What was analysed.
+    twist_offset_deg : float
+        What was added to its blade angle [deg]; a calibrated blade is not the published one.
+    analyses : sequence of dict
+        Results with the keys of ``propmdao analyze --json``.
+    surroundings : str
+        Ground and air.
+    """
+    console = Console()
+    first = analyses[0]
+    console.print(
+        f"{propeller.name}: {propeller.n_blades} blades, diameter {propeller.diameter:.4g} m,"
+        f" speed {first['speed']:.4g} m/s, air {first['rho']:.4g} kg/m3",
+        highlight=False,
+    )
+    if twist_offset_deg:
+        console.print(f"Twist offset {twist_offset_deg:+.4g} deg: not the geometry as described.")
+    console.print(_operating_points(analyses))
+    heard = [observer for analysis in analyses for observer in analysis["observers"]]
+    if heard:
+        console.print(_levels(analyses))
+        trip = "" if first["trip"] is None else f", blades {TRIPPED[first['trip']]}"
+        console.print(f"Levels: {surroundings}{trip}.", highlight=False)
+    else:
+        console.print("No observers: --arc RADIUS ELEVATION... adds their noise.\n")
+    for analysis in analyses:
+        if not analysis["converged"]:
+            console.print(
+                f"NOT CONVERGED at {analysis['rpm']:.1f} rpm, do not use these numbers: "
+                f"{analysis['failure']}."
+            )
+    if not first["viscous"]:
+        console.print(INVISCID)
+    if heard and "broadband" not in heard[0]:
+        console.print(TONES_ONLY)
+    print_files(first)
+
+
+def print_flyover(propeller: Propeller, twist_offset_deg: float, result: dict[str, Any]) -> None:
+    """Print the levels of a flyover.
+
+    Parameters
+    ----------
+    propeller : Propeller
+        What flies.
+    twist_offset_deg : float
+        What was added to its blade angle [deg].
+    result : dict
+        With the keys of ``propmdao flyover --json``.
+    """
+    console = Console()
+    flight, history = result["flight"], result["history"]
+    console.print(
+        f"{propeller.name}: {result['rpm']:.1f} rpm, thrust {result['thrust']:.4g} N, speed"
+        f" {result['speed']:.4g} m/s, {flight['height']:g} m above the ground",
+        highlight=False,
+    )
+    if twist_offset_deg:
+        console.print(f"Twist offset {twist_offset_deg:+.4g} deg: not the geometry as described.")
+    if not result["converged"]:
+        console.print(f"NOT CONVERGED, do not use these numbers: {result['failure']}.")
+    if not result["viscous"]:
+        console.print(INVISCID)
+    table = _table()
+    for heading in ("", "loudest\ndBA", "SEL\ndBA", "EPNL\nEPNdB"):
+        table.add_column(heading, justify="right" if heading else "left")
+    for part, level in result["levels"].items():
+        shown = [_level(level[key], ".1f") for key in ("lamax_dba", "sel_dba")]
+        epnl = result["epnl"] if part == "total" else None
+        table.add_row(part, *shown, "" if epnl is None else f"{epnl:.1f}")
+    console.print(table)
+    if result["epnl_failure"]:
+        console.print(f"No EPNL: {result['epnl_failure']}.", highlight=False)
+    loudest = max(history, key=lambda step: float(step["total_dba"]))
+    console.print(
+        f"Loudest {loudest['time']:+.1f} s from overhead, heard over {loudest['distance']:.1f} m"
+        f" from elevation {loudest['elevation_deg']:+.0f} deg of the rotor plane; half seconds,"
+        f" {len(history)} of them. Blades {TRIPPED[result['trip']]}.",
+        highlight=False,
+    )
+    print_files(result)
+
+
+def print_files(result: dict[str, Any]) -> None:
+    """Print which files of sound and figures were written.
+
+    Parameters
+    ----------
+    result : dict
+        With "sound", of `formats.wav.Recording`, and "figures", names of files; or
+        without.
+    """
+    if "sound" in result:
+        sound = result["sound"]
+        print(
+            f"Sound: {sound['path']}, {sound['duration']:.3f} s, full scale"
+            f" {sound['full_scale']:g} Pa, peak {sound['peak']:.4g} Pa"
+        )
+    if "figures" in result:
+        print("Figures:", *result["figures"])
+
+
+def _operating_points(analyses: Iterable[dict[str, Any]]) -> Table:
+    table = _table()
+    columns = {
+        "rpm": ("rpm", ".1f"),
+        "J": ("J", ".4f"),
+        "thrust": ("thrust\nN", "#.4g"),
+        "torque": ("torque\nN m", "#.4g"),
+        "shaft_power": ("power\nW", "#.4g"),
+        "CT": ("CT", ".5f"),
+        "CQ": ("CQ", ".5f"),
+        "CP": ("CP", ".5f"),
+        "eta": ("eta", ".3f"),
+    }
+    for heading, _ in columns.values():
+        table.add_column(heading, justify="right")
+    for analysis in analyses:
+        table.add_row(*(_format(analysis[key], form) for key, (_, form) in columns.items()))
+    return table
+
+
+def _levels(analyses: Sequence[dict[str, Any]]) -> Table:
+    table = _table()
+    columns = {
+        "radius": ("radius\nm", ".4g"),
+        "elevation_deg": ("elev.\ndeg", ".4g"),
+        "azimuth_deg": ("azim.\ndeg", ".4g"),
+        "spl_bpf_db": ("BPF\ndB", ".1f"),
+        "oaspl_db": ("OASPL\ndB", ".1f"),
+        "oaspl_thickness_db": ("thick-\nness\ndB", ".1f"),
+        "oaspl_loading_db": ("loading\ndB", ".1f"),
+        "oaspl_broadband_db": ("broad-\nband\ndB", ".1f"),
+        "oaspl_dba": ("total\ndBA", ".1f"),
+    }
+    heard = [observer for analysis in analyses for observer in analysis["observers"]]
+    if "broadband" not in heard[0]:
+        columns["oaspl_dba"] = ("tones\ndBA", ".1f")
+    if not any(observer["azimuth_deg"] for observer in heard):
+        del columns["azimuth_deg"]
+    columns = {key: column for key, column in columns.items() if key in heard[0]}
+    table.add_column("rpm", justify="right")
+    for heading, _ in columns.values():
+        table.add_column(heading, justify="right")
+    for analysis in analyses:
+        for observer in analysis["observers"]:
+            table.add_row(
+                f"{analysis['rpm']:.1f}",
+                *(_level(observer[key], form) for key, (_, form) in columns.items()),
+            )
+    return table
+
+
+def _table() -> Table:
+    return Table(box=box.SIMPLE, pad_edge=False, collapse_padding=True)
+
+
+def _level(value: float, form: str) -> str:
+    # Silence is -200 dB.
+    return _format(value, form) if value > -199.0 else "-"
+
+
+def _format(value: float, form: str) -> str:
+    # A zero that has a sign is still zero.
+    return format(value + 0.0, form) if math.isfinite(value) else "-"

@@ -1,0 +1,199 @@
+"""Command line: ``propmdao sweep``."""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Callable, Sequence
+from typing import Any
+
+from propmdao.commands.observer_options import (
+    add_broadband,
+    add_observers,
+    add_surroundings,
+    observers_of,
+    require_broadband,
+    surroundings_of,
+)
+from propmdao.commands.options import (
+    OPERATING_POINT,
+    add_command,
+    add_propeller,
+    number,
+    number_or_range,
+)
+
+SWEEP_DESCRIPTION = """\
+A propeller at many points into a table, a row per point: a map of thrust, torque and noise over
+rotation speed and flight speed, the effect of pitch, or samples for a surrogate model.
+
+Every combination of the values given is a point. A value may be a range START:STOP:STEP that
+includes STOP, and options may be repeated. With --samples, ranges are LOWEST:HIGHEST and points are
+drawn in between (Latin hypercube).
+
+A table that exists is gone on with: its points are not analysed again, so a sweep that was stopped
+or killed resumes. Points that cannot be analysed are rows with status failed and the reason.
+"""
+
+SWEEP_EXAMPLES = """\
+examples:
+  propmdao sweep apcsf_11x4.7 --rpm 3000:6000:500 --speed 0:12:2 --arc 1.905 -45 --out sweep.csv
+  propmdao sweep apcsf_11x4.7 --thrust 1.5 --speed 8 --twist-offset -2:4:0.5 --out pitch.csv
+  propmdao sweep my_blade.toml --samples 200 --rpm 3000:6000 --speed 0:12 --out samples.parquet
+  propmdao sweep apcsf_11x4.7 --points flight.csv --workers 2 --out flight_analysed.csv
+
+Columns that --points may have: rpm, thrust_required, speed, rho, twist_offset_deg, chord_factor,
+diameter, n_blades. SI units, angles in degrees. Exit status: 0, or 2 with one line on stderr, also
+when every point has failed.
+"""
+
+#: Option, variable of a point, unit or placeholder, help.
+OPTIONS = (
+    ("--rpm", "rpm", *OPERATING_POINT["--rpm"]),
+    ("--thrust", "thrust_required", *OPERATING_POINT["--thrust"]),
+    ("--speed", "speed", *OPERATING_POINT["--speed"]),
+    ("--rho", "rho", *OPERATING_POINT["--rho"]),
+    ("--twist-offset", "twist_offset_deg", *OPERATING_POINT["--twist-offset"]),
+    ("--chord-factor", "chord_factor", "F", "times the chord everywhere, default 1"),
+    ("--diameter", "diameter", "M", "stretches the whole blade [m]; default the propeller's"),
+    ("--blades", "n_blades", "B", "number of blades; default the propeller's"),
+)
+MAX_POINTS = 100_000
+
+
+def add_sweep(commands: argparse._SubParsersAction[Any]) -> None:
+    """Add the command to a command line.
+
+    Parameters
+    ----------
+    commands : argparse subparsers
+        What it is added to.
+    """
+    command = add_command(
+        commands,
+        "sweep",
+        _sweep,
+        "thrust, torque and noise at many points into a table",
+        SWEEP_DESCRIPTION,
+        SWEEP_EXAMPLES,
+    )
+    add_propeller(command)
+    for option, variable, unit, text in OPTIONS:
+        command.add_argument(option, dest=variable, metavar=unit, action="append", help=text)
+    command.add_argument(
+        "--points", metavar="FILE", help="points from a CSV file, each with every value given else"
+    )
+    command.add_argument(
+        "--samples", type=int, metavar="N", help="draw N points in the ranges LOWEST:HIGHEST"
+    )
+    command.add_argument(
+        "--seed", type=int, default=1, help="of the drawn points, default 1; same seed, same points"
+    )
+    command.add_argument(
+        "--inviscid", action="store_true", help="without the polars of the sections"
+    )
+    add_broadband(command)
+    command.add_argument(
+        "--workers", type=int, default=1, metavar="N", help="processes that analyse, default 1"
+    )
+    command.add_argument(
+        "--out",
+        required=True,
+        metavar="FILE",
+        help="table: .csv, or .parquet, which is written at the end beside the .csv of that name",
+    )
+    add_observers(command)
+    add_surroundings(command)
+
+
+def _sweep(options: argparse.Namespace) -> None:
+    observers = observers_of(options)
+    surroundings = surroundings_of(options)
+    require_broadband(options)
+    if options.workers < 1:
+        raise ValueError(f"--workers must be 1 or more; it is {options.workers}")
+    # Slow to import, so only once the arguments are known to be good.
+    from propmdao.analysis.sweeps import sweep
+    from propmdao.formats.propellers import load_propeller
+    from propmdao.runtime.worker_processes import WorkerLostError
+
+    points = _points(options)
+    propeller = load_propeller(options.propeller)
+    try:
+        n_new, failures = sweep(
+            propeller,
+            points,
+            options.out,
+            observers=observers,
+            viscous=not options.inviscid,
+            broadband=options.broadband,
+            trip=options.trip,
+            surroundings=surroundings,
+            n_workers=options.workers,
+        )
+    except WorkerLostError as error:
+        raise ValueError(f"{error} The rows so far are kept: run again to go on") from error
+    counts = f"points: {len(points)}, {n_new} new, {len(failures)} failed"
+    if failures and len(failures) == len(points):
+        raise ValueError(f"{counts}, the first with: {failures[0]}")
+    print(f"{counts}; {options.out}")
+    for reason in list(dict.fromkeys(failures))[:3]:
+        print(f"  failed: {reason}")
+
+
+def _points(options: argparse.Namespace) -> list[dict[str, float]]:
+    from propmdao.analysis.sweeps import grid, latin_hypercube, read_points
+
+    given = {variable: getattr(options, variable) for _, variable, _, _ in OPTIONS}
+    given = {variable: texts for variable, texts in given.items() if texts}
+    drawn: list[dict[str, float]] = [{}]
+    if options.samples is not None:
+        if options.samples < 1:
+            raise ValueError(f"--samples must be 1 or more; it is {options.samples}")
+        ranges = {
+            variable: _low_high(variable, given.pop(variable), number)
+            for variable, texts in list(given.items())
+            if any(":" in text for text in texts)
+        }
+        if not ranges:
+            raise ValueError("--samples needs a range LOWEST:HIGHEST to draw from")
+        drawn = latin_hypercube(ranges, options.samples, options.seed)
+    listed = [{}] if options.points is None else read_points(options.points)
+    for variable in given:
+        if any(variable in point for point in listed):
+            raise ValueError(f"{variable} is given as an option and in '{options.points}'")
+    values = {name: _values(name, texts, number_or_range) for name, texts in given.items()}
+    n_points = len(drawn) * len(listed)
+    for numbers in values.values():
+        n_points *= len(numbers)
+    if n_points > MAX_POINTS:
+        raise ValueError(f"{n_points} points are more than the {MAX_POINTS} that are allowed")
+    return [{**a, **b, **c} for a in listed for b in drawn for c in grid(values)]
+
+
+def _values(
+    variable: str, texts: Sequence[str], parse: Callable[[str], float | list[float]]
+) -> list[float]:
+    values: list[float] = []
+    for text in texts:
+        value = _parsed(variable, text, parse)
+        values += value if isinstance(value, list) else [value]
+    return list(dict.fromkeys(values))
+
+
+def _low_high(
+    variable: str, texts: Sequence[str], parse: Callable[[str], float]
+) -> tuple[float, float]:
+    parts = texts[0].split(":")
+    if len(texts) > 1 or len(parts) != 2:
+        raise ValueError(f"{variable}: --samples needs one range LOWEST:HIGHEST; it is {texts}")
+    low, high = (_parsed(variable, part, parse) for part in parts)
+    if not low < high:
+        raise ValueError(f"{variable}: LOWEST of {texts[0]!r} must be below HIGHEST")
+    return low, high
+
+
+def _parsed(variable: str, text: str, parse: Callable[[str], Any]) -> Any:
+    try:
+        return parse(text)
+    except argparse.ArgumentTypeError as error:
+        raise ValueError(f"{variable}: {error}") from None

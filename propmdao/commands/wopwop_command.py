@@ -1,0 +1,227 @@
+"""Command line: ``propmdao wopwop CASEDIR`` runs a case of PSU-WOPWOP and says how loud it is."""
+
+from __future__ import annotations
+
+import argparse
+import csv
+import json
+import sys
+import warnings
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from propmdao.commands.options import add_command
+
+if TYPE_CHECKING:
+    from propmdao.analysis.foreign_case import CaseResult
+
+DESCRIPTION = """\
+Run the cases of a PSU-WOPWOP folder and print the levels that its observers hear.
+
+Reads cases.nam, the case files it names and their geometry and loading files (structured or not,
+constant, periodic or aperiodic); computes thickness and loading noise by Formulation 1A in the time
+domain. Levels are in dB re 20 uPa of the whole record, without its mean and without a window; tones
+are the peaks of its spectrum. Keys without effect here are named on stderr.
+"""
+
+EXAMPLES = """\
+examples:
+  propmdao wopwop my_case
+  propmdao wopwop my_case --json
+  propmdao wopwop my_case --out pressure.csv
+
+Exit status: 0, or 2 with one line on stderr about what cannot be read or computed.
+"""
+
+_PEAKS, _PEAK_RANGE_DB = 10, 60.0
+
+
+def add_wopwop(commands: argparse._SubParsersAction[Any]) -> None:
+    """Add ``wopwop`` to the commands of the program.
+
+    Parameters
+    ----------
+    commands : argparse subparsers
+        Of ``propmdao``.
+    """
+    command = add_command(
+        commands, "wopwop", _wopwop, "run a case of PSU-WOPWOP", DESCRIPTION, EXAMPLES
+    )
+    command.add_argument("folder", metavar="CASEDIR", type=Path, help="folder with cases.nam in it")
+    command.add_argument("--json", action="store_true", help="print JSON instead of tables")
+    command.add_argument(
+        "--out",
+        type=Path,
+        metavar="FILE.csv",
+        help="write the pressure of every observer over time [s, m, Pa]",
+    )
+
+
+def levels(results: Sequence[CaseResult]) -> list[dict[str, Any]]:
+    """Levels at the observers of cases.
+
+    Parameters
+    ----------
+    results : sequence of CaseResult
+        From `run_case`.
+
+    Returns
+    -------
+    list of dict
+        One for each group of observers: case, title, n_times, duration [s], bin_width_hz,
+        observers; each of these has position at the start [m], oaspl_thickness_db,
+        oaspl_loading_db, oaspl_db, oaspl_dba and peaks: the ten highest of the spectrum within
+        60 dB, each frequency_hz, spl_thickness_db, spl_loading_db, spl_db.
+    """
+    return [_group(result) for result in results]
+
+
+def _group(result: CaseResult) -> dict[str, Any]:
+    import numpy as np
+    from scipy.signal import find_peaks
+
+    from propmdao.acoustics.levels.decibels import level_db
+    from propmdao.acoustics.levels.spectrum import narrowband
+    from propmdao.acoustics.levels.weighting import level_dba
+
+    pressure = result.pressure
+    n = pressure.time.shape[1]
+    rate = float((n - 1) / np.ptp(pressure.time[0]))
+    parts = {"thickness_": pressure.thickness, "loading_": pressure.loading, "": pressure.total}
+    power = {}
+    for part, history in parts.items():
+        frequency, power[part] = narrowband(history, rate, rate / n, "boxcar")
+    spectra = {part: np.asarray(level_db(q)) for part, q in power.items()}
+    overall = {part: np.asarray(level_db(q.sum(axis=-1))) for part, q in power.items()}
+    weighted = np.asarray(level_dba(frequency, power[""]))
+    observers = []
+    for i, position in enumerate(pressure.position[:, 0]):
+        level = spectra[""][i]
+        # The first and the last bin may be peaks, too.
+        edged = np.pad(level, 1, constant_values=-np.inf)
+        found = find_peaks(edged, height=level.max() - _PEAK_RANGE_DB)[0] - 1
+        loudest = np.sort(found[np.argsort(level[found])[-_PEAKS:]])
+        peaks = [
+            {"frequency_hz": float(frequency[k])}
+            | {f"spl_{part}db": float(spectrum[i, k]) for part, spectrum in spectra.items()}
+            for k in loudest
+        ]
+        observers.append(
+            {"observer": i + 1, "position": [float(x) for x in position]}
+            | {f"oaspl_{part}db": float(value[i]) for part, value in overall.items()}
+            | {"oaspl_dba": float(weighted[i]), "peaks": peaks}
+        )
+    return {
+        "case": result.case,
+        "title": result.observers,
+        "n_times": n,
+        "duration": n / rate,
+        "bin_width_hz": rate / n,
+        "observers": observers,
+    }
+
+
+def _wopwop(options: argparse.Namespace) -> None:
+    if options.out is not None and not options.out.absolute().parent.is_dir():
+        raise ValueError(f"--out {options.out}: there is no folder {options.out.parent}")
+    # Slow to import, so only once it is wanted.
+    from propmdao.analysis.foreign_case import run_case
+
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        try:
+            results = run_case(options.folder)
+        finally:
+            for message in dict.fromkeys(str(warning.message) for warning in caught):
+                print(f"propmdao wopwop: warning: {message}", file=sys.stderr)
+    if options.out is not None:
+        write_pressure_csv(options.out, results)
+    groups = levels(results)
+    if options.json:
+        json.dump(groups, sys.stdout, indent=2, allow_nan=False)
+        print()
+    else:
+        _print(groups)
+
+
+def write_pressure_csv(path: Path, results: Sequence[CaseResult]) -> None:
+    """Write pressure histories, one line for each observer and time.
+
+    Parameters
+    ----------
+    path : Path
+        Where to.
+    results : sequence of CaseResult
+        From `run_case`.
+
+    Raises
+    ------
+    ValueError
+        If the file cannot be written.
+    """
+    try:
+        with path.open("w", newline="", encoding="utf-8") as stream:
+            out = csv.writer(stream)
+            out.writerow(
+                "case title observer time_s x_m y_m z_m thickness_pa loading_pa total_pa".split()
+            )
+            for result in results:
+                p = result.pressure
+                for i in range(len(p.time)):
+                    rows = zip(
+                        p.time[i], *p.position[i].T, p.thickness[i], p.loading[i], p.total[i],
+                        strict=True,
+                    )  # fmt: skip
+                    for row in rows:
+                        out.writerow([result.case, result.observers, i + 1, *map(float, row)])
+    except OSError as error:
+        raise ValueError(f"{path}: {error.strerror or error}") from None
+
+
+def _print(groups: Sequence[dict[str, Any]]) -> None:
+    from rich import box
+    from rich.console import Console
+    from rich.table import Table
+
+    def table(*headings: str) -> Table:
+        made = Table(box=box.SIMPLE, pad_edge=False, collapse_padding=True)
+        for heading in headings:
+            made.add_column(heading, justify="right")
+        return made
+
+    console = Console()
+    for group in groups:
+        observers = group["observers"]
+        console.print(
+            f"{group['case']}: {group['title'] or 'observers'}, {group['n_times']} times in"
+            f" {group['duration']:.4g} s, bins of {group['bin_width_hz']:.4g} Hz",
+            highlight=False,
+            markup=False,
+        )
+        overall = table(
+            "observer", "x\nm", "y\nm", "z\nm", "thickness\ndB", "loading\ndB", "OASPL\ndB",
+            "tones\ndBA", "loudest\nHz",
+        )  # fmt: skip
+        keys = ("oaspl_thickness_db", "oaspl_loading_db", "oaspl_db", "oaspl_dba")
+        for observer in observers:
+            loudest = max(observer["peaks"], key=lambda peak: float(peak["spl_db"]))
+            overall.add_row(
+                str(observer["observer"]),
+                *(f"{x:.4g}" for x in observer["position"]),
+                *(_level(observer[key]) for key in keys),
+                f"{loudest['frequency_hz']:.1f}",
+            )
+        console.print(overall)
+        top = max(observers, key=lambda observer: float(observer["oaspl_db"]))
+        peaks = table("tone\nHz", "thickness\ndB", "loading\ndB", "total\ndB")
+        for peak in top["peaks"]:
+            frequency, *heard = peak.values()
+            peaks.add_row(f"{frequency:.1f}", *map(_level, heard))
+        console.print(f"Tones at observer {top['observer']}, the loudest:", highlight=False)
+        console.print(peaks)
+
+
+def _level(value: float) -> str:
+    # Silence is -200 dB.
+    return f"{value:.1f}" if value > -199.0 else "-"

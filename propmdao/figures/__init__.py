@@ -1,0 +1,1 @@
+"""Every picture, a module for each kind."""

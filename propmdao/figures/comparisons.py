@@ -1,0 +1,182 @@
+"""Figures of measurements and of what was computed at the same points.
+
+All are 1200 pixels wide, without a display. Measured values are dots, computed ones
+lines.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import numpy.typing as npt
+
+from propmdao.analysis.wind_tunnel import Points
+from propmdao.figures.style import GRID, LINE_STYLES, RUN_COLORS, page
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+_LEAST_THRUST = 0.005  # CT below which an efficiency is that of a brake
+
+
+def performance(measured: Points, computed: Mapping[str, Points]) -> Figure:
+    """CT, CP and eta over advance ratio, every rotation speed in its colour.
+
+    Parameters
+    ----------
+    measured : Points
+        With flight speed; runs near the same multiple of 500 rpm belong together.
+    computed : mapping of str to Points
+        At the same points, by name: a column of axes each.
+
+    Returns
+    -------
+    Figure
+        The figure.
+    """
+    figure = page(11.0)
+    grid: Any = figure.subplots(3, len(computed), sharex=True, sharey="row", squeeze=False)
+    for column, (name, points) in enumerate(computed.items()):
+        grid[0, column].set_title(name, fontsize="medium")
+        for color, speed, run in _runs(measured):
+            _draw_run(grid[:, column], measured[run], points[run], color, speed)
+        grid[-1, column].set_xlabel("advance ratio J")
+    for row, label in zip(grid, ("CT", "CP", "efficiency eta"), strict=True):
+        row[0].set_ylabel(label)
+        for axes in row:
+            axes.grid(**GRID)
+            axes.axhline(0.0, color="0.6", linewidth=0.8)
+    grid[-1, 0].set_ylim(0.0, 0.8)
+    handles, labels = grid[0, 0].get_legend_handles_labels()
+    figure.legend(
+        handles, labels, loc="outside upper center", ncols=len(labels),
+        title="measured (dots) and computed (lines)",
+    )  # fmt: skip
+    return figure
+
+
+def _draw_run(
+    rows: Sequence[Any], measured: Points, points: Points, color: str, label: str
+) -> None:
+    for axes, name in zip(rows, ("CT", "CP", "eta"), strict=True):
+        shown = []
+        for values in (measured, points):
+            y = getattr(values, name)
+            shown.append(np.where(values.CT > _LEAST_THRUST, y, np.nan) if name == "eta" else y)
+        axes.plot(measured.J, shown[0], "o", color=color, markersize=4, mfc="none")
+        axes.plot(points.J, shown[1], color=color, linewidth=1.8, label=label)
+
+
+def static_performance(measured: Points, computed: Mapping[str, Points]) -> Figure:
+    """CT and CP without flight speed over rotation speed.
+
+    Parameters
+    ----------
+    measured : Points
+        Without flight speed.
+    computed : mapping of str to Points
+        At the same points, by name: a line each.
+
+    Returns
+    -------
+    Figure
+        The figure.
+    """
+    figure = page(5.5)
+    both: Any = figure.subplots(1, 2)
+    for axes, name in zip(both, ("CT", "CP"), strict=True):
+        axes.grid(**GRID)
+        axes.plot(measured.rpm, getattr(measured, name), "o", color="black", label="measured",
+                  markersize=5, mfc="none")  # fmt: skip
+        for i, (label, points) in enumerate(computed.items()):
+            axes.plot(points.rpm, getattr(points, name), color=RUN_COLORS[i], label=label,
+                      linewidth=1.8, linestyle=LINE_STYLES[i % len(LINE_STYLES)])  # fmt: skip
+        axes.set(xlabel="rotation speed, rpm", ylabel=f"static {name}")
+    handles, labels = both[0].get_legend_handles_labels()
+    figure.legend(handles, labels, loc="outside upper center", ncols=3)
+    return figure
+
+
+def over_rpm_and_advance_ratio(
+    static: Points,
+    dynamic: Points,
+    values: Mapping[str, tuple[npt.ArrayLike, npt.ArrayLike]],
+) -> Figure:
+    """Quantities over rotation speed without flight speed, and over advance ratio with it.
+
+    Parameters
+    ----------
+    static, dynamic : Points
+        Where.
+    values : mapping of str to (of static, of dynamic)
+        What, by the label of its axis: a row of axes each.
+
+    Returns
+    -------
+    Figure
+        The figure; runs near the same multiple of 500 rpm share a colour.
+    """
+    figure = page(1.0 + 3.5 * len(values))
+    grid: Any = figure.subplots(len(values), 2, sharex="col", sharey="row", squeeze=False)
+    for row, (label, (still, moving)) in zip(grid, values.items(), strict=True):
+        row[0].set_ylabel(label)
+        row[0].plot(static.rpm, np.asarray(still), "o-", color="black", markersize=4)
+        for color, name, run in _runs(dynamic):
+            row[1].plot(
+                dynamic.J[run], np.asarray(moving)[run], "o-", color=color, markersize=4, label=name
+            )
+        for axes in row:
+            axes.grid(**GRID)
+    grid[-1, 0].set_xlabel("rotation speed without flight speed, rpm")
+    grid[-1, 1].set_xlabel("advance ratio J")
+    grid[0, 1].legend(loc="best")
+    return figure
+
+
+def tone_directivity(
+    elevation_deg: npt.ArrayLike,
+    computed: Mapping[str, npt.ArrayLike],
+    measured_at_deg: npt.ArrayLike,
+    measured: Mapping[str, npt.ArrayLike],
+) -> Figure:
+    """Level of a tone over elevation, computed lines and measured dots of the same colour.
+
+    Parameters
+    ----------
+    elevation_deg : (n,) array
+        Where it was computed [deg].
+    computed : mapping of str to (n,) array
+        SPL by name [dB].
+    measured_at_deg : (n_microphones,) array
+        Where it was measured [deg].
+    measured : mapping of str to (n_microphones,) array
+        SPL by the same names [dB].
+
+    Returns
+    -------
+    Figure
+        The figure.
+    """
+    figure = page(6.0)
+    axes = figure.add_subplot()
+    axes.grid(**GRID)
+    for color, (name, level) in zip(RUN_COLORS, computed.items(), strict=False):
+        axes.plot(np.asarray(elevation_deg), np.asarray(level), color=color, label=name)
+        axes.plot(np.asarray(measured_at_deg), np.asarray(measured[name]), "o", color=color)
+    axes.set(
+        xlabel="elevation from the rotor plane, deg (negative: wake side)",
+        ylabel="SPL at blade passage, dB re 20 µPa",
+    )
+    axes.set_xticks(np.arange(-67.5, 68.0, 22.5))
+    axes.legend(title="measured (dots) and computed (lines)", loc="lower center")
+    return figure
+
+
+def _runs(points: Points) -> Iterator[tuple[str, str, npt.NDArray[np.intp]]]:
+    """Colour, name and positions, by rising J, of the runs of a rotation speed."""
+    speeds = 500.0 * np.round(points.rpm / 500.0)
+    for color, speed in zip(RUN_COLORS, np.unique(speeds), strict=False):
+        run = np.flatnonzero(speeds == speed)
+        yield color, f"{speed:.0f} rpm", run[np.argsort(points.J[run])]

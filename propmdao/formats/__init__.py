@@ -1,0 +1,1 @@
+"""Files in and out, a module for each format."""

@@ -1,0 +1,112 @@
+"""Files that other programs read: the rotor's skin, its distributions, its sections."""
+
+from __future__ import annotations
+
+import csv
+from pathlib import Path
+
+import jax.numpy as jnp
+import numpy as np
+
+from propmdao.formats.stl import rotor_triangles, write_stl
+from propmdao.geometry.blade import Blade, span_interpolation
+from propmdao.geometry.meshes import propeller_surface
+from propmdao.geometry.section import section_shape
+from propmdao.propeller.airfoils.airfoil import chord_interpolation
+from propmdao.propeller.description import Propeller
+from propmdao.records.fidelity import Fidelity
+
+_SECTION_POINTS = 161
+
+
+def export_stl(path: str | Path, propeller: Propeller, fidelity: Fidelity) -> int:
+    """Write the skin of all blades as a binary STL file, in metres.
+
+    Parameters
+    ----------
+    path : str or Path
+        Where to.
+    propeller : Propeller
+        The described blade.
+    fidelity : Fidelity
+        Numbers of points of the surface.
+
+    Returns
+    -------
+    int
+        Number of triangles.
+    """
+    nodes = propeller_surface(propeller, fidelity.n_contour, fidelity.n_surface_span)
+    triangles = rotor_triangles(nodes, propeller.n_blades)
+    write_stl(path, triangles, f"propmdao {propeller.name}, metres")
+    return len(triangles)
+
+
+def export_csv(path: str | Path, propeller: Propeller) -> int:
+    """Write the distributions of a blade at its stations.
+
+    Parameters
+    ----------
+    path : str or Path
+        Where to.
+    propeller : Propeller
+        The described blade.
+
+    Returns
+    -------
+    int
+        Number of stations.
+    """
+    blade, radius = Blade.from_propeller(propeller), 0.5 * propeller.diameter
+    columns = {
+        "r_over_R": propeller.r_over_R,
+        "radius_m": radius * propeller.r_over_R,
+        "c_over_R": propeller.c_over_R,
+        "chord_m": radius * propeller.c_over_R,
+        "beta_deg": propeller.beta_deg,
+        "thickness_over_chord": np.asarray(blade.thickness_over_chord),
+        "camber_over_chord": np.asarray(blade.camber_over_chord),
+        "sweep_over_R": propeller.sweep_over_R,
+        "rake_over_R": propeller.rake_over_R,
+    }
+    with Path(path).open("w", newline="", encoding="utf-8") as stream:
+        writer = csv.writer(stream)
+        writer.writerow(columns)
+        # Ten digits: more than were measured, fewer than rounding shows.
+        rows = zip(*columns.values(), strict=True)
+        writer.writerows([f"{value:.10g}" for value in row] for row in rows)
+    return propeller.r_over_R.size
+
+
+def export_section(path: str | Path, propeller: Propeller, r_over_R: float) -> int:
+    """Write a section of unit chord as coordinates in Selig's order, as XFOIL reads them.
+
+    Parameters
+    ----------
+    path : str or Path
+        Where to.
+    propeller : Propeller
+        The described blade.
+    r_over_R : float
+        Where the section is.
+
+    Returns
+    -------
+    int
+        Number of points.
+
+    Raises
+    ------
+    ValueError
+        If the radius is outside the blade.
+    """
+    span = span_interpolation(propeller.r_over_R, [r_over_R])
+    angle = np.linspace(np.pi, -np.pi, _SECTION_POINTS)
+    operator = jnp.asarray(chord_interpolation(np.abs(angle)))
+    camber, thickness = section_shape(Blade.from_propeller(propeller), span, operator)
+    z = np.asarray(camber[:, 0]) + 0.5 * np.sign(np.round(angle, 12)) * np.asarray(thickness[:, 0])
+    x = 0.5 * (1.0 - np.cos(angle))
+    lines = [f"{propeller.name} at r/R {r_over_R:g}"]
+    lines += [f"{a:.7f} {b:.7f}" for a, b in zip(x, z + 0.0, strict=True)]
+    Path(path).write_text("\n".join(lines) + "\n", encoding="utf-8")
+    return _SECTION_POINTS

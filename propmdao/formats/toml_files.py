@@ -1,0 +1,130 @@
+"""Propeller files (TOML), read and written."""
+
+from __future__ import annotations
+
+import dataclasses
+import difflib
+import os
+import tomllib
+from pathlib import Path
+from typing import Any
+
+import tomli_w
+
+from propmdao.formats.text import read_text
+from propmdao.propeller.checks import PropellerError
+from propmdao.propeller.description import DISTRIBUTIONS, Propeller
+
+
+def read_toml(path: str | os.PathLike[str]) -> Propeller:
+    """Read a propeller file.
+
+    Parameters
+    ----------
+    path : path
+        TOML file; .dat paths in it are relative to its folder.
+
+    Returns
+    -------
+    Propeller
+        The propeller.
+
+    Raises
+    ------
+    PropellerError
+        If the file cannot be read, is no TOML, lacks a key, has an unknown one or holds a value
+        out of range; the message begins with the file.
+    """
+    path = Path(path)
+    text = read_text(path, PropellerError)
+    return propeller_from_text(text, str(path), path.parent)
+
+
+def write_toml(path: str | os.PathLike[str], propeller: Propeller) -> None:
+    """Write a propeller file that `read_toml` reads back to the same propeller.
+
+    Parameters
+    ----------
+    path : path
+        Where to write; .dat files in its folder or below are named relative to it.
+    propeller : Propeller
+        What is written.
+    """
+    folder = Path(path).absolute().parent
+    lines = [tomli_w.dumps({"name": propeller.name, "diameter": propeller.diameter}).rstrip()]
+    lines.append(f"n_blades = {propeller.n_blades}")
+    for key in DISTRIBUTIONS:
+        values = getattr(propeller, key)
+        if values is None or (key in ("sweep_over_R", "rake_over_R") and not values.any()):
+            continue
+        lines.append(f"{key} = [{', '.join(repr(float(value)) for value in values)}]")
+    tables = []
+    for position, name in propeller.airfoils:
+        if name.endswith(".dat"):
+            absolute = Path(name).absolute()
+            inside = absolute.is_relative_to(folder)
+            name = str(absolute.relative_to(folder) if inside else absolute)
+        entry = tomli_w.dumps({"airfoil": name}).rstrip()
+        tables.append(f"{{ r_over_R = {position}, {entry} }}")
+    lines.append(f"airfoils = [ {', '.join(tables)} ]")
+    lines.append(tomli_w.dumps({"source": propeller.source}))
+    Path(path).write_text("\n".join(lines), encoding="utf-8")
+
+
+def propeller_from_text(text: str, label: str, folder: Path | None) -> Propeller:
+    """Build a propeller from the text of a propeller file.
+
+    Parameters
+    ----------
+    text : str
+        TOML.
+    label : str
+        What messages about it begin with.
+    folder : Path or None
+        That .dat paths are relative to.
+
+    Returns
+    -------
+    Propeller
+        The propeller.
+
+    Raises
+    ------
+    PropellerError
+        As in `read_toml`.
+    """
+    try:
+        data = tomllib.loads(text)
+    except tomllib.TOMLDecodeError as error:
+        raise PropellerError(f"{label}: is not valid TOML: {error}") from error
+    fields = dataclasses.fields(Propeller)
+    keys = [field.name for field in fields]
+    for key in data:
+        if key not in keys:
+            near = difflib.get_close_matches(key, keys, n=1)
+            hint = f"did you mean '{near[0]}'?" if near else f"known: {', '.join(keys)}"
+            raise PropellerError(f"{label}: unknown key '{key}'; {hint}")
+    for key in ("name", "diameter", "n_blades", "r_over_R", "c_over_R", "beta_deg", "airfoils"):
+        if key not in data:
+            raise PropellerError(f"{label}: missing key '{key}'")
+    data["airfoils"] = _airfoil_tables(label, data["airfoils"], folder)
+    try:
+        return Propeller(**data)
+    except PropellerError as error:
+        raise PropellerError(f"{label}: {error}") from error
+
+
+def _airfoil_tables(label: str, tables: Any, folder: Path | None) -> list[tuple[float, str]]:
+    """Read airfoils = [{r_over_R, airfoil}, ...]; .dat paths become relative to the folder."""
+    pairs = []
+    for table in tables if isinstance(tables, list) else [tables]:
+        if not isinstance(table, dict) or set(table) != {"r_over_R", "airfoil"}:
+            raise PropellerError(
+                f'{label}: airfoils must be a list of {{ r_over_R = 0.15, airfoil = "e63" }}; '
+                f"got {table!r}"
+            )
+        name = table["airfoil"]
+        if folder is not None and isinstance(name, str) and name.endswith(".dat"):
+            name = str(folder / name)
+        pairs.append((table["r_over_R"], name))
+    return pairs

@@ -1,0 +1,91 @@
+"""Calibrated sound files (WAV)."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+import soundfile  # type: ignore[import-untyped]
+from numpy.typing import ArrayLike
+
+from propmdao.acoustics.sounds.recordings import SAMPLE_RATE
+
+
+class Recording(NamedTuple):
+    """What has been written to a sound file.
+
+    Attributes
+    ----------
+    path : Path
+        The file.
+    full_scale : float
+        Pressure of its largest number, 1.0 [Pa]; also in the file's comment.
+    peak : float
+        Largest pressure in it [Pa].
+    duration : float
+        [s].
+    """
+
+    path: Path
+    full_scale: float
+    peak: float
+    duration: float
+
+
+def write_wav(
+    path: str | Path,
+    pressure: ArrayLike,
+    full_scale: float,
+    sample_rate: int = SAMPLE_RATE,
+    bits: int = 24,
+) -> Recording:
+    """Write a calibrated sound file.
+
+    Parameters
+    ----------
+    path : str or Path
+        The file, ending in .wav.
+    pressure : (n_times,) or (n_channels, n_times) array_like
+        Record, one or a channel for each observer [Pa].
+    full_scale : float
+        Pressure of the largest number in the file [Pa]. Two blades written with the same one are
+        as loud beside each other as they are; see `common_full_scale`.
+    sample_rate : int
+        [Hz].
+    bits : {24, 32}
+        Of each sample.
+
+    Returns
+    -------
+    Recording
+        The file and its calibration, which its comment states, too.
+
+    Raises
+    ------
+    ValueError
+        If the pressure is not finite or would be clipped, or the number of bits is another one.
+    """
+    p = np.asarray(pressure, float)
+    if bits not in _CODING:
+        raise ValueError(f"bits of a sound file must be 24 or 32; got {bits}")
+    if not (np.isfinite(full_scale) and full_scale > 0):
+        raise ValueError(f"full scale must be positive and finite [Pa]; got {full_scale:g}")
+    if p.ndim not in (1, 2) or p.size == 0:
+        raise ValueError(f"a sound file holds (n_channels, n_times) pressures; got {p.shape}")
+    if not np.all(np.isfinite(p)):
+        raise ValueError(f"pressure must be finite; {np.sum(~np.isfinite(p))} samples are not")
+    peak = float(np.abs(p).max())
+    if peak > full_scale:
+        raise ValueError(
+            f"pressure would be clipped: its peak is {peak:.4g} Pa, full scale {full_scale:.4g} Pa"
+        )
+    with soundfile.SoundFile(
+        path, "w", sample_rate, np.atleast_2d(p).shape[0], _CODING[bits], format="WAV"
+    ) as file:
+        file.comment = f"full scale = {full_scale:.9g} Pa"
+        file.write(p.T / full_scale)
+    return Recording(Path(path), full_scale, peak, p.shape[-1] / sample_rate)
+
+
+_CODING = {24: "PCM_24", 32: "PCM_32"}

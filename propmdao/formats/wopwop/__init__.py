@@ -1,0 +1,1 @@
+"""Files of PSU-WOPWOP: reading and writing its cases."""

@@ -1,0 +1,184 @@
+"""Cases of ours for PSU-WOPWOP: namelists and files of rotors, observers and their motion."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from propmdao.acoustics.kinematics.motion import Frame, Motion
+from propmdao.acoustics.kinematics.reception import Observers
+from propmdao.acoustics.sources.moving_sources import AperiodicLoads, PeriodicLoads
+from propmdao.acoustics.sources.rotors import Rotor
+from propmdao.formats.wopwop.blade_files import blade_geometry, blade_loading
+from propmdao.formats.wopwop.geometry_file import write_geometry
+from propmdao.formats.wopwop.loading_file import write_loading
+from propmdao.formats.wopwop.namelists import write_namelists
+
+Groups = list[tuple[str, Mapping[str, Any]]]
+
+
+def write_case(
+    folder: str | Path,
+    rotors: Sequence[Rotor],
+    surfaces: Sequence[ArrayLike | None],
+    observers: Observers,
+    times: ArrayLike,
+    density: float,
+    sound_speed: float,
+    flight: Motion = (),
+) -> None:
+    """Write a case that PSU-WOPWOP, and `run_case`, can run.
+
+    Parameters
+    ----------
+    folder : str or Path
+        Where to; made if it is not there. Files of the same names are replaced.
+    rotors : sequence of Rotor
+        Of one aircraft; their panels are not used.
+    surfaces : sequence of (n_contour, n_span, 3) array_like or None
+        Of the blade of each rotor: points of `surface_nodes` [m]; without them no thickness noise.
+    observers : Observers
+        Fixed or in uniform motion.
+    times : (n_times,) array_like
+        Uniform observer times [s].
+    density, sound_speed : float
+        Of the undisturbed air [kg/m^3], [m/s].
+    flight : Motion
+        Of the aircraft; at rest by default.
+
+    Raises
+    ------
+    ValueError
+        If a blade has neither surface nor loads, or the folder cannot be written.
+
+    Notes
+    -----
+    Forces become one line through the points they act on, from root to tip, with the force per
+    length that the trapezoidal rule turns into the same forces again.
+    """
+    folder = Path(folder)
+    clock = np.asarray(times, float)
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        containers: Groups = [
+            ("ContainerIn", _container("aircraft", flight, len(rotors))),
+            *_bases(flight),
+        ]
+        for number, (rotor, nodes) in enumerate(zip(rotors, surfaces, strict=True), start=1):
+            containers += _rotor(folder, number, rotor, nodes, float(clock[1] - clock[0]))
+        groups: Groups = [
+            ("EnvironmentIn", _environment(len(observers.position))),
+            ("EnvironmentConstants", {"rho": float(density), "c": float(sound_speed)}),
+        ]
+        groups += _observers(observers, clock) + containers
+        write_namelists(folder / "case.nam", groups)
+        names = {"globalFolderName": "./", "caseNameFile": "case.nam"}
+        write_namelists(folder / "cases.nam", [("casename", names)])
+    except OSError as error:
+        raise ValueError(f"{folder}: {error.strerror or error}") from None
+
+
+def _environment(n_observers: int) -> dict[str, Any]:
+    flags = ("acousticPressure", "thicknessNoise", "loadingNoise", "totalNoise", "spectrum")
+    return {
+        "nbSourceContainers": 1,
+        "nbObserverContainers": n_observers,
+        "ASCIIOutputFlag": True,
+        "SPLdBFlag": True,
+        **{f"{name}Flag": True for name in flags},
+    }
+
+
+def _observers(observers: Observers, clock: np.ndarray) -> Groups:
+    groups: Groups = []
+    moving = bool(np.any(observers.velocity))
+    for number, place in enumerate(np.asarray(observers.position, float), start=1):
+        values = {
+            "title": f"observer {number}",
+            "nt": clock.size,
+            "tMin": float(clock[0]),
+            "tMax": float(clock[-1]),
+            **{f"{axis}Loc": float(x) for axis, x in zip("xyz", place, strict=True)},
+            "nbBase": int(moving),
+        }
+        groups.append(("ObserverIn", values))
+        if moving:
+            way = {"TranslationType": "KnownFunction", "VH": _list(observers.velocity)}
+            groups.append(("CB", {"title": "observer motion"} | way))
+    return groups
+
+
+def _rotor(folder: Path, number: int, rotor: Rotor, nodes: ArrayLike | None, step: float) -> Groups:
+    geometry = blade_geometry(nodes, rotor.loads)
+    write_geometry(folder / f"rotor{number}_geometry.dat", geometry)
+    azimuths = np.atleast_1d(np.asarray(rotor.azimuths, float))
+    turn = {
+        "title": "rotation",
+        "rotation": True,
+        "AngleType": "KnownFunction",
+        "Omega": float(rotor.rotation_speed),
+        "Psi0": 0.0,
+        "AxisType": "TimeIndependent",
+        "AxisValue": [0.0, 0.0, 1.0],
+    }
+    values = _container(f"rotor {number}", rotor.mount, azimuths.size) | {"dTau": step}
+    values["nbBase"] += 1
+    groups: Groups = [("ContainerIn", values), *_bases(rotor.mount), ("CB", turn)]
+    own_loads = isinstance(rotor.loads, AperiodicLoads)
+    for blade, azimuth in enumerate(azimuths):
+        container: dict[str, Any] = {
+            "title": f"rotor {number} blade {blade + 1}",
+            "nbBase": 1,
+            "patchGeometryFile": f"rotor{number}_geometry.dat",
+        }
+        if rotor.loads is not None:
+            name = f"rotor{number}_loading{blade + 1 if own_loads else ''}.dat"
+            container["patchLoadingFile"] = name
+            if own_loads or blade == 0:
+                loading = blade_loading(
+                    rotor.loads, len(geometry.zones), rotor.rotation_speed, blade
+                )
+                write_loading(folder / name, loading)
+        if isinstance(rotor.loads, PeriodicLoads):
+            container["periodicKeyOffset"] = float(np.sign(rotor.rotation_speed) * azimuth)
+        fixed = {"AngleType": "TimeIndependent", "AngleValue": float(azimuth)}
+        axis = {"AxisType": "TimeIndependent", "AxisValue": [0.0, 0.0, 1.0]}
+        groups += [("ContainerIn", container), ("CB", {"title": "azimuth"} | fixed | axis)]
+    return groups
+
+
+def _container(title: str, motion: Motion, n_parts: int) -> dict[str, Any]:
+    return {"title": title, "nbContainer": n_parts, "nbBase": len(motion)}
+
+
+def _bases(motion: Motion) -> Groups:
+    return [("CB", _base(frame)) for frame in motion]
+
+
+def _base(frame: Frame) -> dict[str, Any]:
+    values: dict[str, Any] = {
+        "TranslationType": "KnownFunction",
+        "AH": _list(frame.acceleration),
+        "VH": _list(frame.velocity),
+        "Y0": _list(frame.offset),
+    }
+    if not (np.any(frame.angle) or np.any(frame.rate) or np.any(frame.swing)):
+        return values
+    values |= {"AxisType": "TimeIndependent", "AxisValue": _list(frame.axis)}
+    if not np.any(frame.swing):
+        turn = {"AngleType": "KnownFunction", "Psi0": float(frame.angle)}
+        return values | turn | {"Omega": float(frame.rate)}
+    if np.any(frame.rate):
+        raise ValueError("a frame that turns and swings takes two of PSU-WOPWOP's changes of base")
+    values |= {"AngleType": "Periodic", "Omega": float(frame.swing_rate), "A0": float(frame.angle)}
+    for letter, factors in zip("AB", np.asarray(frame.swing), strict=True):
+        values |= {f"{letter}{k}": -float(q) for k, q in enumerate(factors, start=1)}
+    return values
+
+
+def _list(vector: Any) -> list[float]:
+    return [float(x) for x in np.asarray(vector)]

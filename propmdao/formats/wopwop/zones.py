@@ -1,0 +1,279 @@
+"""Zones of PSU-WOPWOP files: headers first, then the data time by time and zone by zone."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from propmdao.formats.wopwop.binary import Floats, Reader, Writer
+
+TIMES = {1: "constant", 2: "periodic", 3: "aperiodic"}
+GRIDS = {1: "structured", 2: "unstructured"}
+STRUCTURED, UNSTRUCTURED = GRIDS
+CENTRED = {1: "at nodes", 2: "at faces"}
+_CONSTANT, _PERIODIC = 1, 2
+
+
+@dataclass(frozen=True)
+class Zone:
+    """One zone of a geometry or loading file.
+
+    Attributes
+    ----------
+    name : str
+        At most 32 characters.
+    values : (n_times, n_components, j_max, i_max) or (n_times, n_components, n) float32 array
+        Structured or unstructured. Of a geometry: x, y, z [m] of the nodes and the three components
+        of their normals. Of a loading: pressure [Pa], the force ON THE BLADE per area [N/m^2] or
+        per length of a line [N/m], or rho, rho u, rho v, rho w, p'. One time if constant.
+    keys : (n_times,) float32 array or None
+        Times [s], or periodic keys in any unit; None if constant.
+    period : float or None
+        Of a periodic zone [s].
+    normals_at_faces : (n_times, 3, j_max - 1, i_max - 1) or (n_times, 3, n_faces) array or None
+        Of a geometry with face-centred normals; `values` then has the nodes alone.
+    faces : tuple of tuple of int
+        Of an unstructured geometry: the nodes around each face, counted from 1.
+    """
+
+    name: str
+    values: Floats
+    keys: Floats | None = None
+    period: float | None = None
+    normals_at_faces: Floats | None = None
+    faces: tuple[tuple[int, ...], ...] = ()
+
+    @property
+    def structured(self) -> bool:
+        """Whether the nodes are a grid."""
+        return self.values.ndim == 4
+
+
+@dataclass(frozen=True)
+class ZoneHeader:
+    """What the header of a zone says: its name, size and times."""
+
+    name: str
+    shape: tuple[int, ...]
+    faces: tuple[tuple[int, ...], ...]
+    period: float | None
+    n_times: int | None
+
+    @property
+    def shape_of_faces(self) -> tuple[int, ...]:
+        """As many faces as there are, in the order of the nodes."""
+        return (len(self.faces),) if self.faces else tuple(max(n - 1, 1) for n in self.shape)
+
+
+def read_layout(file: Reader, contents: str) -> tuple[int, int, bool]:
+    """Read what the headers of both kinds of files say of their zones.
+
+    Parameters
+    ----------
+    file : Reader
+        At its grid.
+    contents : str
+        Of the file, to be named: "geometry" or "loading".
+
+    Returns
+    -------
+    grid, kind : int
+        Of `GRIDS`, of `TIMES`.
+    at_faces : bool
+        Whether values or normals belong to faces, not nodes.
+
+    Raises
+    ------
+    WopwopFileError
+        If they are not known.
+    """
+    grid = file.choose(GRIDS, "grid")
+    kind = file.choose(TIMES, f"time dependence of the {contents}")
+    return grid, kind, file.choose(CENTRED, f"place of the {contents}'s values") == 2
+
+
+def read_header(file: Reader, kind: int, grid: int, has_faces: bool) -> ZoneHeader:
+    """Read the header of a zone.
+
+    Parameters
+    ----------
+    file : Reader
+        At the beginning of the header.
+    kind : int
+        Time dependence, one of `TIMES`.
+    grid : int
+        One of `GRIDS`.
+    has_faces : bool
+        Whether the faces of an unstructured zone are listed: in geometry files.
+
+    Returns
+    -------
+    ZoneHeader
+        As it stands.
+
+    Raises
+    ------
+    WopwopFileError
+        If a face has fewer than three nodes or one that there is not.
+    """
+    name = file.text(32)
+    period = float(file.floats(1)[0]) if kind == _PERIODIC else None
+    n_times = file.count("number of times of a zone") if kind != _CONSTANT else None
+    if grid == STRUCTURED:
+        i_max, j_max = file.count("iMax"), file.count("jMax")
+        return ZoneHeader(name, (j_max, i_max), (), period, n_times)
+    n = file.count("number of nodes" if has_faces else "number of data")
+    faces = []
+    for _ in range(file.count("number of faces") if has_faces else 0):
+        n_nodes = file.count("number of nodes of a face")
+        face = file.ints(n_nodes)
+        if n_nodes < 3 or not 1 <= min(face) <= max(face) <= n:
+            raise file.error(
+                f"a face of zone {name!r} must have 3 or more of the nodes 1 ... {n}; it has {face}"
+            )
+        faces.append(tuple(face))
+    return ZoneHeader(name, (n,), tuple(faces), period, n_times)
+
+
+def read_zones(
+    file: Reader, headers: Sequence[ZoneHeader], n_components: int, face_normals: bool = False
+) -> tuple[Zone, ...]:
+    """Read the data of all zones up to the end of the file.
+
+    Parameters
+    ----------
+    file : Reader
+        Behind the last header.
+    headers : sequence of ZoneHeader
+        Of all zones with data.
+    n_components : int
+        Number of values at each node.
+    face_normals : bool
+        Whether three more follow for each face.
+
+    Returns
+    -------
+    tuple of Zone
+        In the order of the headers.
+
+    Raises
+    ------
+    WopwopFileError
+        If the file ends too early or goes on, holds NaN, or the zones differ in their number of
+        times.
+    """
+    counts = {head.n_times for head in headers}
+    if len(counts) > 1:
+        raise file.error(f"all zones must have the same number of times; they have {counts}")
+    n_times = counts.pop()
+    keys: list[list[np.float32]] = [[] for _ in headers]
+    values: list[list[Floats]] = [[] for _ in headers]
+    normals: list[list[Floats]] = [[] for _ in headers]
+    for _ in range(n_times or 1):
+        for zone, head in enumerate(headers):
+            if n_times is not None:
+                keys[zone].append(file.floats(1)[0])
+            values[zone].append(file.floats(n_components, *head.shape))
+            if face_normals:
+                normals[zone].append(file.floats(3, *head.shape_of_faces))
+    file.end()
+    for zone, head in enumerate(headers):
+        if not all(np.isfinite(block).all() for block in (*values[zone], *normals[zone])):
+            raise file.error(f"zone {head.name!r} holds infinities or NaN")
+    return tuple(
+        Zone(
+            head.name,
+            np.stack(values[zone]),
+            None if n_times is None else np.stack(keys[zone]),
+            head.period,
+            np.stack(normals[zone]) if face_normals else None,
+            head.faces,
+        )
+        for zone, head in enumerate(headers)
+    )
+
+
+def time_dependence(zones: Sequence[Zone]) -> int:
+    """Say which of `TIMES` all of the zones are.
+
+    Parameters
+    ----------
+    zones : sequence of Zone
+        Of one file.
+
+    Returns
+    -------
+    int
+        1 constant, 2 periodic or 3 aperiodic.
+
+    Raises
+    ------
+    ValueError
+        If they differ, or in their number of times, or there are none.
+    """
+    kinds = {
+        (
+            _CONSTANT if zone.keys is None else 3 if zone.period is None else _PERIODIC,
+            len(zone.values),
+        )
+        for zone in zones
+    }
+    if len(kinds) != 1:
+        found = ", ".join(f"{TIMES[kind]} with {n} times" for kind, n in sorted(kinds)) or "none"
+        raise ValueError(f"zones of a file must have the same time dependence; got {found}")
+    return kinds.pop()[0]
+
+
+def grid_of(zones: Sequence[Zone]) -> int:
+    """Say which of `GRIDS` all of the zones are.
+
+    Parameters
+    ----------
+    zones : sequence of Zone
+        Of one file.
+
+    Returns
+    -------
+    int
+        1 structured or 2 unstructured.
+
+    Raises
+    ------
+    ValueError
+        If they differ.
+    """
+    if len({zone.structured for zone in zones}) > 1:
+        raise ValueError("zones of a file must all be structured or all unstructured")
+    return STRUCTURED if zones[0].structured else UNSTRUCTURED
+
+
+def write_zones(out: Writer, zones: Sequence[Zone]) -> None:
+    """Append headers and data of zones.
+
+    Parameters
+    ----------
+    out : Writer
+        Behind the header of the file.
+    zones : sequence of Zone
+        Of the same time dependence.
+    """
+    for zone in zones:
+        out.text(zone.name, 32)
+        if zone.period is not None:
+            out.floats(zone.period)
+        if zone.keys is not None:
+            out.ints(len(zone.values))
+        out.ints(*zone.values.shape[:1:-1])  # iMax, jMax
+        if zone.faces:
+            out.ints(len(zone.faces))
+        for face in zone.faces:
+            out.ints(len(face), *face)
+    for step in range(len(zones[0].values)):
+        for zone in zones:
+            if zone.keys is not None:
+                out.floats(float(zone.keys[step]))
+            out.floats(zone.values[step])
+            if zone.normals_at_faces is not None:
+                out.floats(zone.normals_at_faces[step])

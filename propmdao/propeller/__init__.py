@@ -1,0 +1,1 @@
+"""What a user describes: a propeller, its checks, its airfoils, the catalogue."""

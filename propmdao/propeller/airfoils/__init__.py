@@ -1,0 +1,1 @@
+"""Airfoils: camber and thickness over the chord, their library, files of coordinates."""

@@ -1,0 +1,68 @@
+"""Propellers and airfoils that ship with propmdao: names, and where their files are."""
+
+from __future__ import annotations
+
+from importlib.resources import files
+from importlib.resources.abc import Traversable
+
+_FOLDER = files(__name__)
+
+
+def catalog_names() -> list[str]:
+    """Names of the propellers of the catalogue, sorted.
+
+    Returns
+    -------
+    list of str
+        What `propmdao.propeller.description.load_propeller` knows by name.
+    """
+    return _names("propellers")
+
+
+def airfoil_names() -> list[str]:
+    """Names of the airfoils of the catalogue, sorted; NACA 4-digit sections need no file.
+
+    Returns
+    -------
+    list of str
+        What a propeller file may name as an airfoil beside "naca4412" and .dat paths.
+    """
+    return _names("airfoils")
+
+
+def propeller_file(name: str) -> Traversable:
+    """TOML file of a propeller of the catalogue.
+
+    Parameters
+    ----------
+    name : str
+        One of `catalog_names`.
+
+    Returns
+    -------
+    Traversable
+        The file.
+    """
+    return _FOLDER / "propellers" / f"{name}.toml"
+
+
+def airfoil_file(name: str) -> Traversable:
+    """TOML file of an airfoil of the catalogue.
+
+    Parameters
+    ----------
+    name : str
+        One of `airfoil_names`.
+
+    Returns
+    -------
+    Traversable
+        The file: name, source, and camber and full thickness over chord on
+        `propmdao.propeller.airfoils.airfoil.CHORD_FRACTION`.
+    """
+    return _FOLDER / "airfoils" / f"{name}.toml"
+
+
+def _names(folder: str) -> list[str]:
+    entries = (entry.name for entry in (_FOLDER / folder).iterdir())
+    return sorted(name.removesuffix(".toml") for name in entries if name.endswith(".toml"))

@@ -1,0 +1,188 @@
+"""Checks of described propellers: a value out of range becomes one line that names it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from propmdao.propeller.airfoils.airfoil import AirfoilError
+from propmdao.propeller.airfoils.library import find_airfoil
+
+FloatArray = npt.NDArray[np.float64]
+
+
+class PropellerError(ValueError):
+    """A propeller's description is wrong or cannot be found; the message is one line."""
+
+
+def number(key: str, value: Any) -> float:
+    """Return the value as a finite float.
+
+    Parameters
+    ----------
+    key : str
+        What the message calls it.
+    value : object
+        What was given.
+
+    Returns
+    -------
+    float
+        The number.
+
+    Raises
+    ------
+    PropellerError
+        If it is text, a truth value, not finite or no number at all.
+    """
+    try:
+        result = float(value)
+    except (TypeError, ValueError):
+        raise PropellerError(f"{key} must be a number; it is {value!r}") from None
+    if isinstance(value, (str, bool)) or not np.isfinite(result):
+        raise PropellerError(f"{key} must be a finite number; it is {value!r}")
+    return result
+
+
+def distribution(key: str, values: Any, r: FloatArray | None = None) -> FloatArray:
+    """Return the values as a read-only array of finite numbers.
+
+    Parameters
+    ----------
+    key : str
+        What the message calls it.
+    values : array_like
+        What was given.
+    r : (n_stations,) array, optional
+        Stations that it must have one value for.
+
+    Returns
+    -------
+    (n_stations,) array
+        A copy.
+
+    Raises
+    ------
+    PropellerError
+        If it is no list of numbers, has another length or a value that is not finite.
+    """
+    try:
+        array = np.array(values)
+        valid = array.ndim == 1 and array.dtype.kind in "fiu"
+    except ValueError:  # lists of unequal length inside the list
+        valid = False
+    if not valid:
+        raise PropellerError(f"{key} must be a list of numbers; it is {values!r}")
+    array = array.astype(float)
+    if r is not None and array.size != r.size:
+        raise PropellerError(f"{key} has {array.size} values for {r.size} stations of r_over_R")
+    require(key, "be finite", np.isfinite(array), array, r)
+    array.setflags(write=False)
+    return array
+
+
+def require(
+    key: str,
+    what: str,
+    holds: npt.NDArray[np.bool_],
+    values: FloatArray,
+    r: FloatArray | None = None,
+) -> None:
+    """Raise for the first station where a condition does not hold.
+
+    Parameters
+    ----------
+    key, what : str
+        The message begins ``key must what``.
+    holds : (n_stations,) array of bool
+        Where the condition holds.
+    values : (n_stations,) array
+        The values it is about.
+    r : (n_stations,) array, optional
+        Stations, named in the message.
+
+    Raises
+    ------
+    PropellerError
+        ``c_over_R must be positive; station 3 (r/R 0.25) has -0.02``; stations count from 1.
+    """
+    if not holds.all():
+        i = int(np.argmin(holds))
+        where = "" if r is None else f" (r/R {r[i]:.10g})"
+        raise PropellerError(f"{key} must {what}; station {i + 1}{where} has {values[i]:.10g}")
+
+
+def stations(values: Any) -> FloatArray:
+    """Return r/R of the stations: above 0, rising, the last at the tip.
+
+    Parameters
+    ----------
+    values : array_like
+        What was given.
+
+    Returns
+    -------
+    (n_stations,) array
+        A read-only copy.
+
+    Raises
+    ------
+    PropellerError
+        If there are fewer than two, they do not rise, or do not end at 1: the diameter says where
+        the tip is, a blade that ends before it contradicts itself, and nothing is extrapolated.
+    """
+    r = distribution("r_over_R", values)
+    if r.size < 2:
+        raise PropellerError(f"r_over_R must hold at least 2 stations; it holds {r.size}")
+    require("r_over_R", "be above 0 and at most 1", (r > 0.0) & (r <= 1.0), r)
+    require("r_over_R", "rise from station to station", np.append(True, np.diff(r) > 0.0), r)
+    if r[-1] != 1.0:
+        raise PropellerError(f"r_over_R must end at the tip, 1; the last station has {r[-1]:.10g}")
+    return r
+
+
+def airfoil_pairs(pairs: Iterable[Any]) -> tuple[tuple[float, str], ...]:
+    """Return (r/R, airfoil) pairs, rising in r/R, each airfoil known.
+
+    Parameters
+    ----------
+    pairs : iterable of (float, str)
+        What was given.
+
+    Returns
+    -------
+    tuple of (float, str)
+        The pairs.
+
+    Raises
+    ------
+    PropellerError
+        If there is none, one is no such pair, r/R does not rise within 0..1 or an airfoil cannot
+        be found or read.
+    """
+    checked: list[tuple[float, str]] = []
+    for pair in pairs:
+        try:
+            position, name = pair
+        except (TypeError, ValueError):
+            raise PropellerError(f"airfoils must be (r/R, airfoil) pairs; got {pair!r}") from None
+        if not isinstance(name, str):
+            raise PropellerError(f"an airfoil must be given by name or path; got {name!r}")
+        position = number(f"r_over_R of airfoil '{name}'", position)
+        if not 0.0 <= position <= 1.0:
+            raise PropellerError(f"r_over_R of airfoil '{name}' must be in 0..1; it is {position}")
+        if checked and position <= checked[-1][0]:
+            raise PropellerError(
+                f"airfoils must rise in r_over_R; '{name}' at {position} follows {checked[-1][0]}"
+            )
+        try:
+            find_airfoil(name)
+        except AirfoilError as error:
+            raise PropellerError(str(error)) from error
+        checked.append((position, name))
+    if not checked:
+        raise PropellerError("airfoils must name at least one airfoil")
+    return tuple(checked)

@@ -1,0 +1,123 @@
+"""Propeller: what a user describes, checked, read from and written to TOML."""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Sequence
+
+import numpy as np
+import numpy.typing as npt
+
+from propmdao.propeller import checks as checks
+from propmdao.propeller.airfoils.library import find_airfoil
+from propmdao.propeller.checks import PropellerError
+
+FloatArray = npt.NDArray[np.float64]
+
+
+#: Station arrays of a propeller, in the order of its file.
+DISTRIBUTIONS = (
+    "r_over_R",
+    "c_over_R",
+    "beta_deg",
+    "thickness_over_chord",
+    "sweep_over_R",
+    "rake_over_R",
+)
+
+
+@dataclasses.dataclass(frozen=True, eq=False)
+class Propeller:
+    """A propeller as it is described: stations, sections, blades.
+
+    A changed propeller is ``dataclasses.replace(propeller, beta_deg=propeller.beta_deg + 1)``.
+
+    Attributes
+    ----------
+    name : str
+        What it is called.
+    diameter : float
+        Tip to tip [m].
+    n_blades : int
+        Number of blades, at least 1.
+    r_over_R : (n_stations,) array
+        Stations, rising; the last is the tip, 1.
+    c_over_R, beta_deg : (n_stations,) arrays
+        Chord over tip radius and blade angle from the rotor plane [deg].
+    airfoils : sequence of (float, str)
+        r/R and airfoil (catalogue name, "naca4412" or a .dat path), rising in r/R; blended
+        linearly between, held constant beyond.
+    thickness_over_chord : (n_stations,) array, optional
+        Maximum thickness over chord; by default that of the airfoils.
+    sweep_over_R : (n_stations,) array or number, optional
+        Quarter chord aft (against rotation) of the radial line, 0 by default.
+    rake_over_R : (n_stations,) array or number, optional
+        Quarter chord toward thrust of the rotor plane, 0 by default.
+    source : str
+        Where the numbers come from.
+
+    Raises
+    ------
+    PropellerError
+        If a value is missing, not finite, out of range or an airfoil is unknown.
+    """
+
+    name: str
+    diameter: float
+    n_blades: int
+    r_over_R: FloatArray
+    c_over_R: FloatArray
+    beta_deg: FloatArray
+    airfoils: Sequence[tuple[float, str]]
+    thickness_over_chord: FloatArray | None = None
+    sweep_over_R: FloatArray = dataclasses.field(default_factory=lambda: np.zeros(()))
+    rake_over_R: FloatArray = dataclasses.field(default_factory=lambda: np.zeros(()))
+    source: str = ""
+
+    def __post_init__(self) -> None:
+        for key in ("name", "source"):
+            if not isinstance(getattr(self, key), str):
+                raise PropellerError(f"{key} must be text; it is {getattr(self, key)!r}")
+        # The attribute of a frozen dataclass can only be set this way.
+        object.__setattr__(self, "diameter", checks.number("diameter", self.diameter))
+        if not self.diameter > 0.0:
+            raise PropellerError(f"diameter must be positive [m]; it is {self.diameter}")
+        if not isinstance(self.n_blades, int | np.integer) or isinstance(self.n_blades, bool):
+            raise PropellerError(f"n_blades must be a whole number; it is {self.n_blades!r}")
+        if self.n_blades < 1:
+            raise PropellerError(f"n_blades must be at least 1; it is {self.n_blades}")
+
+        r = checks.stations(self.r_over_R)
+        object.__setattr__(self, "r_over_R", r)
+        for key in DISTRIBUTIONS[1:]:
+            value = getattr(self, key)
+            if key == "thickness_over_chord" and value is None:
+                continue
+            if key in ("sweep_over_R", "rake_over_R") and np.ndim(value) == 0:
+                value = np.full(r.size, checks.number(key, value))
+            object.__setattr__(self, key, checks.distribution(key, value, r))
+        chord, beta, thickness = self.c_over_R, self.beta_deg, self.thickness_over_chord
+        checks.require("c_over_R", "be positive", chord > 0.0, chord, r)
+        checks.require("beta_deg", "be within -90..90", np.abs(beta) <= 90.0, beta, r)
+        if thickness is not None:
+            holds = (thickness > 0.0) & (thickness < 1.0)
+            checks.require("thickness_over_chord", "be above 0 and below 1", holds, thickness, r)
+        object.__setattr__(self, "airfoils", checks.airfoil_pairs(self.airfoils))
+
+    def sections(self) -> tuple[FloatArray, FloatArray]:
+        """Blend the airfoils to the stations, linearly in r/R.
+
+        Returns
+        -------
+        camber, thickness : (n_stations, n_chord) arrays
+            Camber line and full thickness over chord, on
+            `airfoils.airfoil.CHORD_FRACTION`; the thickness is that of the airfoils, not
+            scaled to `thickness_over_chord`.
+        """
+        airfoils = [find_airfoil(name) for _, name in self.airfoils]
+        positions = [position for position, _ in self.airfoils]
+        weights = np.stack(
+            [np.interp(self.r_over_R, positions, unit) for unit in np.eye(len(airfoils))], axis=1
+        )
+        camber = weights @ np.stack([airfoil.camber for airfoil in airfoils])
+        return camber, weights @ np.stack([airfoil.thickness for airfoil in airfoils])

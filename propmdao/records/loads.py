@@ -1,0 +1,23 @@
+"""Loads of a blade, as sources of sound."""
+
+from __future__ import annotations
+
+import jax
+
+from propmdao.records.pytrees import record
+
+
+@record
+class PointLoads:
+    """Point forces on blade 1, constant in the rotating frame.
+
+    Attributes
+    ----------
+    position : (n, 3) array
+        Where the forces act, blade frame at azimuth 0 [m].
+    force : (n, 3) array
+        Force ON THE FLUID, blade frame at azimuth 0 [N].
+    """
+
+    position: jax.Array
+    force: jax.Array

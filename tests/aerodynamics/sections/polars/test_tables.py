@@ -1,0 +1,260 @@
+"""The tables that ship: limits of theory, symmetry, derivatives, how they were made."""
+
+from __future__ import annotations
+
+import dataclasses
+import warnings
+from collections.abc import Callable
+from pathlib import Path
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+import pytest
+
+from propmdao.aerodynamics.sections.polars import propeller_polars as finding
+from propmdao.aerodynamics.sections.polars.family import (
+    blade_tables,
+    section_tables,
+    warn_outside_sections,
+)
+from propmdao.aerodynamics.sections.polars.neuralfoil_tables import REYNOLDS, neuralfoil_polar
+from propmdao.aerodynamics.sections.polars.propeller_polars import polars_for
+from propmdao.aerodynamics.sections.polars.shipped import shape, shipped_tables
+from propmdao.aerodynamics.sections.polars.table import (
+    PolarError,
+    PolarRangeWarning,
+    PolarSubstituteWarning,
+    PolarTable,
+    section_coefficients,
+    warn_outside,
+)
+from propmdao.formats.propellers import load_propeller
+from propmdao.geometry.blade import Blade, span_interpolation
+from propmdao.propeller.airfoils.airfoil import CHORD_FRACTION, naca4
+from propmdao.propeller.airfoils.library import find_airfoil
+from propmdao.propeller.catalog import catalog_names
+from propmdao.propeller.description import Propeller
+
+Section = Callable[..., PolarTable]
+
+
+def test_version_and_settings_are_recorded() -> None:
+    settings = shipped_tables().settings
+    assert settings.startswith("NeuralFoil 0.")
+    assert "model xxxlarge, n_crit 5" in settings
+
+
+@pytest.mark.parametrize("re", [2e4, 1e5, 5e5])
+def test_a_symmetric_section_has_no_lift_at_no_angle(section: Section, re: float) -> None:
+    cl, _, cm = section_coefficients(section("naca0009"), jnp.zeros(1), jnp.full(1, re))
+    np.testing.assert_allclose([cl[0], cm[0]], 0.0, atol=1e-12)
+
+
+def test_lift_upside_down_is_lift_the_other_way(section: Section) -> None:
+    alpha, re = jnp.radians(jnp.linspace(-170.0, 170.0, 69)), jnp.full(69, 8e4)
+    upright = section_coefficients(section("naca4409", 69, camber=0.04), alpha, re)
+    turned = section_coefficients(section("naca4409", 69, camber=-0.04), -alpha, re)
+    np.testing.assert_allclose(turned[0], -upright[0], atol=1e-12)
+    np.testing.assert_allclose(turned[1], upright[1], rtol=1e-12)
+    np.testing.assert_allclose(turned[2], -upright[2], atol=1e-12)
+
+
+@pytest.mark.parametrize("airfoil", ["naca0012", "naca4412", "clarky"])
+def test_lift_slope_at_high_reynolds_numbers_is_near_that_of_thin_airfoils(
+    section: Section, airfoil: str
+) -> None:
+    alpha = jnp.radians(jnp.array([1.0, 4.0]))
+    cl, _, _ = section_coefficients(section(airfoil, 2), alpha, jnp.full(2, 1e6))
+    slope = float((cl[1] - cl[0]) / (alpha[1] - alpha[0]) / (2.0 * jnp.pi))
+    assert 0.90 < slope < 1.10  # thickness adds 0.77 t/c, the boundary layer takes away
+
+
+@pytest.mark.parametrize("airfoil", ["naca4412", "clarky"])
+def test_zero_lift_angle_is_near_that_of_thin_airfoils(section: Section, airfoil: str) -> None:
+    alpha = np.radians(np.arange(-12.0, 0.0, 0.05))
+    cl, _, _ = section_coefficients(
+        section(airfoil, alpha.size), jnp.asarray(alpha), jnp.full(alpha.size, 1e6)
+    )
+    last_negative = np.flatnonzero(np.asarray(cl) < 0.0)[-1]
+    difference = np.degrees(alpha[last_negative] - find_airfoil(airfoil).zero_lift_angle)
+    assert abs(difference) < 0.5
+
+
+def test_drag_falls_with_reynolds_number(section: Section) -> None:
+    re = jnp.asarray(REYNOLDS[1:])
+    _, cd, _ = section_coefficients(section("clarky", re.size), jnp.full(re.size, 0.05), re)
+    assert np.all(np.diff(cd) < 0.0)
+
+
+@pytest.mark.parametrize("alpha_deg", [-171.3, -20.0, -7.0, 2.5, 9.0, 14.0, 21.0, 75.0, 180.0])
+def test_c1_in_angle_and_reynolds_number(section: Section, alpha_deg: float) -> None:
+    table = section("e63")
+
+    def coefficients(alpha: jax.Array, log_re: jax.Array) -> jax.Array:
+        found = section_coefficients(table, alpha[None], jnp.exp(log_re)[None])
+        return jnp.concatenate(found)
+
+    jacobian = jax.jacfwd(coefficients, (0, 1))
+    alpha, log_re = jnp.radians(alpha_deg), jnp.log(1e5)  # 1e5 is a node of the table
+    below, above = (jacobian(alpha + d, log_re + d) for d in (-1e-8, 1e-8))
+    # Second derivatives are below 1e3: lift changes its slope of 2 pi within a degree at stall.
+    np.testing.assert_allclose(np.array(below), np.array(above), atol=1e-4)
+
+
+def test_reynolds_numbers_outside_are_held(section: Section) -> None:
+    alpha, table = jnp.full(1, 0.05), section("clarky")
+    far = section_coefficients(table, alpha, jnp.array([1e9]))
+    further = section_coefficients(table, alpha, jnp.array([1e12]))
+    end = section_coefficients(table, alpha, jnp.array([1e6]))
+    np.testing.assert_allclose(np.ravel(far), np.ravel(further), rtol=1e-9)
+    assert float(far[0][0]) == pytest.approx(float(end[0][0]), abs=0.02)
+
+
+def test_one_warning_names_the_station_furthest_outside(section: Section) -> None:
+    re, r = np.array([3e3, 2e3, 5e4]), np.array([0.2, 0.3, 0.9])
+    with pytest.warns(PolarRangeWarning, match=r"2e\+03 at r/R 0.3 .*2 of 3 sections") as caught:
+        warn_outside(section("clarky", 3), re, r)
+    assert len(caught) == 1
+    with pytest.warns(PolarRangeWarning, match=r"Mach number 0.8 at r/R 0.9 is above 0.7"):
+        warn_outside(section("clarky", 3), np.full(3, 1e5), r, np.array([0.2, 0.3, 0.8]))
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        warn_outside(section("clarky", 3), np.full(3, 1e4), r, 0.7)
+
+
+@pytest.mark.parametrize("name", catalog_names())
+def test_every_propeller_of_the_catalogue_has_polars(name: str) -> None:
+    propeller = load_propeller(name)
+    polars = polars_for(propeller)
+    np.testing.assert_allclose(polars.weights.sum(axis=1), 1.0)
+    assert np.isfinite(polars.values).all()
+
+
+def test_camber_or_thickness_outside_the_polars_is_told(
+    propeller: Callable[..., Propeller],
+) -> None:
+    described = propeller((0.0, "naca4412"))
+    blade, polars = Blade.from_propeller(described), polars_for(described)
+    warn_outside_sections(polars, blade, described.r_over_R)
+    thick = dataclasses.replace(blade, thickness_over_chord=jnp.array([0.3, 0.12, 0.1]))
+    with pytest.warns(PolarRangeWarning, match=r"thickness_over_chord 0.3 at r/R 0.2 .*0.03..0.22"):
+        warn_outside_sections(polars, thick, described.r_over_R)
+
+
+@pytest.mark.parametrize("field", ["camber_over_chord", "thickness_over_chord"])
+def test_derivatives_along_the_sections(propeller: Callable[..., Propeller], field: str) -> None:
+    described = propeller((0.2, "e63"), (1.0, "clarky"))
+    blade, polars = Blade.from_propeller(described), polars_for(described)
+    span = span_interpolation(described.r_over_R, np.linspace(0.2, 1.0, 7))
+    alpha, re = jnp.linspace(-0.05, 0.2, 7), jnp.geomspace(2e4, 2e5, 7)
+
+    def coefficients(change: jax.Array | float) -> jax.Array:
+        changed = getattr(blade, field) + change * jnp.array([1.0, -0.5, 0.7])
+        table = blade_tables(polars, dataclasses.replace(blade, **{field: changed}), span)
+        return jnp.concatenate(section_coefficients(table, alpha, re))
+
+    step = 1e-6
+    difference = (coefficients(step) - coefficients(-step)) / (2.0 * step)
+    # Third derivatives are below 1e7 (cells of 1 %): step^2 / 6 of that.
+    np.testing.assert_allclose(jax.jacfwd(coefficients)(0.0), difference, rtol=1e-6, atol=1e-5)
+
+
+def test_stations_of_the_slow_flyer_use_the_blends_on_either_side(
+    propeller: Callable[..., Propeller],
+) -> None:
+    described = propeller((0.0, "e63"), (1.0, "clarky"))  # Clark-Y shares 0.2, 0.5, 1
+    weights = np.asarray(polars_for(described).weights)
+    # in the order e63, clarky, e63-clarky
+    np.testing.assert_allclose(weights, [[0.6, 0.0, 0.4], [0.0, 0.0, 1.0], [0.0, 1.0, 0.0]])
+
+
+def test_other_blends_count_by_camber(propeller: Callable[..., Propeller]) -> None:
+    weights = np.asarray(polars_for(propeller((0.0, "e63"), (1.0, "naca4412"))).weights)
+    e63, naca = find_airfoil("e63").max_camber, find_airfoil("naca4412").max_camber
+    np.testing.assert_allclose(weights[1], [e63 / (e63 + naca), naca / (e63 + naca)])
+
+
+def test_where_a_section_has_no_polars_those_of_another_stand_in_and_it_is_said(
+    propeller: Callable[..., Propeller], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(finding, "neuralfoil_installed", lambda: False)
+    says = r"'naca2212' has no polars.*NACA 4-digit.*own=\{'naca2212'.*\[polars\]"
+    with pytest.warns(PolarSubstituteWarning, match=says):
+        found = polars_for(propeller((0.0, "naca2212")))
+    np.testing.assert_array_equal(found.values, polars_for(propeller((0.0, "naca2412"))).values)
+
+
+@pytest.mark.parametrize("known", ["e63", "clarky", "naca4409", "naca0012"])
+def test_coordinates_of_a_known_shape_have_its_polars(
+    propeller: Callable[..., Propeller],
+    monkeypatch: pytest.MonkeyPatch,
+    tmp_path: Path,
+    known: str,
+) -> None:
+    monkeypatch.setattr(finding, "neuralfoil_installed", lambda: False)
+    section = find_airfoil(known)
+    x = np.append(CHORD_FRACTION[::-1], CHORD_FRACTION[1:])
+    half = 0.5 * section.thickness
+    z = np.append((section.camber + half)[::-1], (section.camber - half)[1:])
+    file = tmp_path / "mine.dat"
+    np.savetxt(file, np.transpose([x, z]), fmt="%.5f", header="mine", comments="")
+    found = polars_for(propeller((0.0, str(file))))
+    np.testing.assert_array_equal(found.values, polars_for(propeller((0.0, known))).values)
+
+
+def test_a_users_table_goes_before_the_catalogue(
+    propeller: Callable[..., Propeller], section: Section
+) -> None:
+    own = section("naca0012")
+    described = propeller((0.0, "clarky"), (1.0, "e63"))
+    polars = polars_for(described, own={"clarky": own})
+    span = span_interpolation(described.r_over_R, [0.2, 1.0])
+    table = blade_tables(polars, Blade.from_propeller(described), span)
+    at = jnp.full(2, 0.05), jnp.full(2, 1e5)
+    cl = section_coefficients(table, *at)[0]
+    assert cl[0] < 0.75 * cl[1]
+    with pytest.raises(PolarError, match="must hold one section"):
+        polars_for(described, own={"clarky": section("naca0012", 2)})
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", ["naca4", "e63", "clarky"])
+def test_neuralfoil_makes_the_same_tables_again(name: str) -> None:
+    pytest.importorskip("neuralfoil", reason="the extra `polars` is not installed")
+    camber, thickness = shape(name)
+    alpha = np.array([-2.0, 3.0, 6.0])
+    cl, cd, cm, _ = neuralfoil_polar(0.045 * camber, 0.09 * thickness, alpha, REYNOLDS[2:])
+    stored = shipped_tables().values[name][9, 3]  # camber 0.045, thickness 0.09
+    columns = 48 + alpha.astype(int)
+    # The rounding of the file, and what other versions of numpy may add.
+    np.testing.assert_allclose(stored[0][2:, columns], cl, atol=2e-4)
+    np.testing.assert_allclose(stored[1][2:, columns], np.log(cd), atol=2e-4)
+    np.testing.assert_allclose(stored[2][2:, columns], cm, atol=2e-5)
+
+
+# Mean |dcl|, |dcd| over -4..8 deg at Re 6e4: what interpolation and blending of shapes cost.
+BETWEEN_NODES = {"naca": (0.0034, 0.00027), "quarter blend": (0.0119, 0.00053)}
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("case", BETWEEN_NODES)
+def test_sections_between_the_nodes_are_near_neuralfoil(
+    propeller: Callable[..., Propeller], case: str
+) -> None:
+    pytest.importorskip("neuralfoil", reason="the extra `polars` is not installed")
+    if case == "naca":
+        section, described = naca4(0.0525, 0.4, 0.105), propeller((0.0, "naca4412"))
+        camber, thickness = section.camber, section.thickness
+    else:
+        described = propeller((0.4, "e63"), (0.8, "clarky"))  # a share of 0.25 at r/R 0.5
+        camber, thickness = (values[1] for values in described.sections())
+    polars, alpha, re = polars_for(described), np.arange(-4.0, 8.5, 0.5), 6e4
+    table = section_tables(
+        polars, polars.weights[1:2], jnp.array([camber.max()]), jnp.array([thickness.max()])
+    )
+    repeated = dataclasses.replace(table, values=jnp.repeat(table.values, alpha.size, axis=0))
+    found = section_coefficients(repeated, jnp.radians(alpha), jnp.full(alpha.size, re))
+    exact = neuralfoil_polar(camber, thickness, alpha, np.array([re]))
+    differences = [np.abs(np.asarray(found[k]) - exact[k][0]).mean() for k in range(2)]
+    np.testing.assert_allclose(differences, BETWEEN_NODES[case], rtol=0.1)

@@ -1,0 +1,58 @@
+"""What sections are held to: stall delay adds where a section stalls, and nowhere else."""
+
+import jax.numpy as jnp
+import numpy as np
+import pytest
+
+from propmdao.aerodynamics.lattice.strips import strip_radii
+from propmdao.aerodynamics.sections.laws import section_laws, viscous_sections
+from propmdao.aerodynamics.sections.polars.propeller_polars import polars_for
+from propmdao.aerodynamics.solutions.axial import solve_steady
+from propmdao.formats.propellers import load_propeller
+from propmdao.geometry.blade import Blade, span_interpolation
+from propmdao.geometry.lattice import lattice_nodes, lattice_span
+
+NC, NS, OMEGA = 4, 10, 440.0
+
+
+def laws(name, delay):
+    propeller = load_propeller(name)
+    stations, blade = propeller.r_over_R, Blade.from_propeller(propeller)
+    nodes = lattice_nodes(blade, span_interpolation(stations, lattice_span(stations[0], NS)), NC)
+    at = span_interpolation(stations, strip_radii(stations[0], NS))
+    sections = viscous_sections(polars_for(propeller), blade, at, 340.0, delay)
+    strips = solve_steady(nodes, 2, 0.5 * propeller.diameter, OMEGA, 5.0, 1.2).strips
+    return section_laws(strips, OMEGA * strips.radius, 8.0, 1.2, sections)
+
+
+@pytest.fixture(scope="module", params=["apcsf_11x4.7", "apce_10x7"])
+def both(request):
+    """Laws in two dimensions, and on the rotating blade."""
+    return laws(request.param, 0.0), laws(request.param, 1.0)
+
+
+def test_rotation_adds_nothing_in_attached_flow(both):
+    flat, turning = both
+    attached = -0.5 * flat.zero_lift_angle
+    for two_dimensional, rotating in zip(
+        flat.beyond_thin(attached), turning.beyond_thin(attached), strict=True
+    ):
+        np.testing.assert_allclose(rotating, two_dimensional, atol=1e-12)
+
+
+def test_rotation_adds_lift_and_drag_past_stall(both):
+    flat, turning = both
+    stalled = jnp.full(NS, np.radians(18.0))
+    (lift, drag), (more_lift, more_drag) = flat.beyond_thin(stalled), turning.beyond_thin(stalled)
+    inboard = slice(0, NS // 2)
+    assert (more_lift - lift)[inboard].min() > 0.1
+    np.testing.assert_allclose(
+        more_drag - drag, (more_lift - lift) * np.tan(np.radians(18.0)), rtol=1e-9
+    )
+
+
+def test_lift_that_the_boundary_layer_takes_off_camber_is_no_stall(both):
+    flat, turning = both
+    # At the Reynolds numbers of the outer half: one to three degrees.
+    lost = np.degrees(turning.potential_zero_lift_angle - flat.zero_lift_angle)[NS // 2 :]
+    assert lost.min() > 0.5 and lost.max() < 4.0

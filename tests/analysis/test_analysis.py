@@ -1,0 +1,143 @@
+"""The one-call face: same numbers as its parts, plain results, clear refusals."""
+
+import json
+
+import numpy as np
+import pytest
+
+from propmdao.analysis.single_point import analyze
+from propmdao.formats.propellers import load_propeller
+from propmdao.records.fidelity import Fidelity
+from propmdao.records.listening import Surroundings
+
+SLOW_FLYER = load_propeller("apcsf_11x4.7")
+COARSE = Fidelity(n_chordwise=4, n_spanwise=10, n_contour=21, n_surface_span=12, n_harmonics=3)
+
+
+def run(**asked):
+    return analyze(SLOW_FLYER, fidelity=COARSE, **asked).to_dict()
+
+
+def test_required_thrust_is_met_and_agrees_with_the_rpm_found():
+    trimmed = run(thrust=1.2, speed=8.0)
+    given = run(rpm=trimmed["rpm"], speed=8.0)
+    assert trimmed["thrust"] == pytest.approx(1.2, rel=1e-6)
+    assert given["torque"] == pytest.approx(trimmed["torque"], rel=1e-9)
+
+
+def test_results_are_consistent_plain_numbers():
+    result = run(rpm=4200.0, speed=8.0, observers=[(1.905, -45.0), (3.0, 0.0)])
+    assert json.loads(json.dumps(result, allow_nan=False)) == result
+    assert result["CP"] == pytest.approx(2 * np.pi * result["CQ"])
+    assert result["shaft_power"] == pytest.approx(result["torque"] * 4200 * np.pi / 30)
+    assert result["eta"] == pytest.approx(result["thrust"] * 8.0 / result["shaft_power"])
+    below, beside = result["observers"]
+    assert (below["radius"], below["elevation_deg"]) == (1.905, -45.0)
+    assert (beside["radius"], beside["elevation_deg"]) == (3.0, 0.0)
+    for observer in (below, beside):
+        levels = [harmonic["spl_db"] for harmonic in observer["harmonics"]]
+        assert observer["spl_bpf_db"] == levels[0]
+        energy = 10 * np.log10(sum(10 ** (level / 10) for level in levels))
+        assert observer["oaspl_db"] == pytest.approx(energy)
+        bands = [band["spl_db"] for band in observer["third_octave"]]
+        assert 10 * np.log10(sum(10 ** (level / 10) for level in bands)) == pytest.approx(energy)
+        assert [h["frequency_hz"] for h in observer["harmonics"]] == pytest.approx([140, 280, 420])
+
+
+def test_hover_and_standstill_are_ordinary():
+    hover = run(rpm=4200.0)
+    assert hover["thrust"] > 3.0 and hover["eta"] == 0.0 and hover["J"] == 0.0
+    still = run(rpm=0.0, speed=8.0, observers=[(1.905, -45.0)])
+    assert still["thrust"] == still["torque"] == still["CT"] == still["J"] == 0.0
+    assert still["converged"] and still["observers"][0]["oaspl_db"] == -200.0
+    json.dumps(still, allow_nan=False)
+
+
+def test_viscosity_takes_thrust_and_adds_power():
+    viscous, inviscid = (run(rpm=4200.0, speed=8.0, viscous=on) for on in (True, False))
+    assert viscous["viscous"] and not inviscid["viscous"]
+    assert viscous["thrust"] < 0.95 * inviscid["thrust"]
+    assert viscous["eta"] < 0.9 * inviscid["eta"]
+    without_delay = run(rpm=4200.0, stall_delay=False)
+    assert without_delay["thrust"] < run(rpm=4200.0)["thrust"]
+
+
+def test_broadband_noise_adds_to_the_tones():
+    where = {"rpm": 4200.0, "observers": [(1.905, -45.0), (1.905, 0.0)]}
+    tones, both = run(**where), run(**where, broadband=True)
+    for alone, total in zip(tones["observers"], both["observers"], strict=True):
+        assert total["harmonics"] == alone["harmonics"]
+        noise = total["oaspl_broadband_db"]
+        energy = 10 * np.log10(10 ** (alone["oaspl_db"] / 10) + 10 ** (noise / 10))
+        assert total["oaspl_db"] == pytest.approx(energy)
+        bands = [band["spl_db"] for band in total["third_octave"]]
+        assert 10 * np.log10(sum(10 ** (level / 10) for level in bands)) == pytest.approx(energy)
+        assert total["oaspl_dba"] > alone["oaspl_dba"] + 5.0
+        mechanisms = [key for key in total["broadband"][0] if key.endswith("_db")]
+        for band in total["broadband"]:
+            powers = [10 ** (band[key] / 10) for key in mechanisms if key != "spl_db"]
+            assert band["spl_db"] == pytest.approx(10 * np.log10(sum(powers)), abs=1e-6)
+    json.dumps(both, allow_nan=False)
+
+
+def test_twist_offset_turns_the_whole_blade():
+    by_offset = run(rpm=4200.0, speed=8.0, twist_offset_deg=2.0)
+    assert by_offset["thrust"] > 1.3 * run(rpm=4200.0, speed=8.0)["thrust"]
+
+
+@pytest.mark.parametrize(
+    ("asked", "says"),
+    [
+        ({}, "give either rpm or thrust"),
+        ({"rpm": 4000.0, "thrust": 1.0}, "give either rpm or thrust"),
+        ({"rpm": -1.0}, "rpm must be 0 or more; it is -1"),
+        ({"rpm": float("nan")}, "rpm must be 0 or more"),
+        ({"thrust": 0.0}, "thrust must be positive; it is 0 N"),
+        ({"rpm": 4000.0, "speed": -2.0}, "speed must be 0 m/s or more; it is -2"),
+        ({"rpm": 4000.0, "density": 0.0}, "density must be positive; it is 0 kg/m3"),
+        ({"rpm": 4000.0, "observers": [(0.1, 0.0)]}, "observer 1 is inside the source region"),
+        ({"rpm": 40000.0}, "relative tip Mach number must be below 1"),
+        ({"thrust": 900.0}, "thrust 900 N is out of reach at 0 m/s"),
+        ({"thrust": 1.0, "speed": 310.0}, "speed must be below 306"),
+    ],
+)
+def test_bad_input_is_refused_in_one_line(asked, says):
+    with pytest.raises(ValueError) as error:
+        run(**asked)
+    assert says in str(error.value)
+    assert "\n" not in str(error.value)
+
+
+def test_on_the_ground_all_is_six_decibels_louder_and_nothing_else_changes():
+    """Observers on the ground 3 m below a hovering rotor, or wherever the ground is: the same."""
+    places = [(5.0, np.degrees(np.arcsin(-0.6)), azimuth) for azimuth in (0.0, 70.0)]
+    free = run(rpm=4200.0, observers=places, broadband=True)
+    for ground in ("flush", 3.0):
+        heard = run(rpm=4200.0, observers=places, broadband=True, surroundings=Surroundings(ground))
+        assert heard["thrust"] == free["thrust"] and heard["surroundings"]["ground"] == ground
+        for ours, theirs in zip(heard["observers"], free["observers"], strict=True):
+            assert ours["azimuth_deg"] == theirs["azimuth_deg"]
+            for name in ("oaspl_db", "oaspl_dba", "oaspl_thickness_db", "oaspl_broadband_db"):
+                assert ours[name] - theirs[name] == pytest.approx(20 * np.log10(2), abs=1e-6)
+
+
+def test_in_axial_flight_it_is_as_loud_all_around_until_the_ground_is_on_one_side():
+    places = [(2.0, 10.0, azimuth) for azimuth in (0.0, 90.0, 180.0)]
+    free, level = (
+        [o["oaspl_db"] for o in run(rpm=4200.0, speed=8.0, observers=places, **how)["observers"]]
+        for how in ({}, {"surroundings": Surroundings(2.0, level_flight=True)})
+    )
+    assert np.ptp(free) < 1e-6
+    # Azimuth 0 is down: 3 cm above the ground.
+    assert 5.5 < level[0] - free[0] < 6.1 and np.ptp(level) > 1.0
+
+
+def test_tripped_blades_shed_no_laminar_vortices():
+    asked = {"rpm": 4200.0, "speed": 8.0, "observers": [(2.0, -20.0)], "broadband": True}
+    untripped, tripped = (run(**asked, trip=trip) for trip in ("none", "heavy"))
+    assert (untripped["trip"], tripped["trip"]) == ("none", "heavy")
+    shed = [band["laminar_shedding_db"] for band in tripped["observers"][0]["broadband"]]
+    assert max(shed) == -200.0
+    loud, quiet = (one["observers"][0]["oaspl_broadband_db"] for one in (untripped, tripped))
+    assert loud - quiet > 5.0
+    assert tripped["thrust"] == untripped["thrust"]

@@ -1,0 +1,144 @@
+"""A flyover against what is heard flying along, and its levels against each other."""
+
+from __future__ import annotations
+
+import dataclasses
+
+import numpy as np
+import pytest
+
+from propmdao.acoustics.levels.decibels import oaspl_db
+from propmdao.acoustics.levels.time_levels import a_weighted, short_time_level_db
+from propmdao.acoustics.sounds.recordings import SAMPLE_RATE
+from propmdao.analysis.flyover_results import PARTS, STEP, Flight
+from propmdao.analysis.flyovers import fly_over
+from propmdao.analysis.single_point import analyze
+from propmdao.formats.propellers import load_propeller
+from propmdao.records.fidelity import Fidelity
+
+PROPELLER = load_propeller("apcsf_11x4.7")
+COARSE = Fidelity(n_chordwise=3, n_spanwise=10, n_contour=21, n_surface_span=12, n_harmonics=4)
+HEIGHT = 20.0
+
+
+def run(**options):
+    return analyze(PROPELLER, rpm=4200.0, fidelity=COARSE, **options)
+
+
+@pytest.fixture(scope="module")
+def found():
+    """Heard by somebody who flies along below."""
+    return run(speed=8.0, broadband=True, observers=[(HEIGHT, 0.0)])
+
+
+@pytest.fixture(scope="module")
+def heard(found):
+    return fly_over(PROPELLER, found, Flight(HEIGHT, air=None), fidelity=COARSE)
+
+
+def level(mean_square):
+    return 10 * np.log10(np.sum(mean_square, axis=-1) / 4e-10)
+
+
+def from_overhead(heard, part):
+    """Level when the propeller is heard from the nearest point."""
+    moment = HEIGHT / 340.294
+    return float(np.interp(moment, heard.time, level(heard.mean_square[part])))
+
+
+def test_tones_from_overhead_are_those_heard_flying_along_and_the_ground(found, heard):
+    # Half a second around: on 4 m of the way, at 20 m height, the level hardly changes.
+    along = found.tones
+    for part, amplitude in (("thickness", along.thickness), ("loading", along.loading)):
+        expected = float(oaspl_db(amplitude)[0]) + 20 * np.log10(2)
+        assert from_overhead(heard, part) == pytest.approx(expected, abs=0.2)
+
+
+def test_broadband_noise_at_its_moment_is_that_heard_flying_along_and_the_ground(found):
+    # The microphone is for a moment where somebody flying along would be, in the rotor plane.
+    flight = Flight(HEIGHT, duration=2.0, air=None)
+    heard = fly_over(PROPELLER, found, flight, fidelity=COARSE)
+    k = int(np.argmin(np.abs(heard.time)))
+    x = 8.0 * heard.time[k]
+    place = np.hypot(HEIGHT, x), -np.degrees(np.arctan2(x, HEIGHT))
+    along = run(speed=8.0, broadband=True, observers=[place])
+    # The Doppler shift moves energy between bands.
+    assert level(heard.mean_square["broadband"][k]) == pytest.approx(
+        level(np.asarray(along.broadband.total[0])) + 20 * np.log10(2), abs=0.1
+    )
+
+
+def test_energies_add_and_levels_follow(heard):
+    summary = heard.to_dict()
+    assert len(summary["history"]) == heard.time.size == 60
+    assert np.allclose(np.diff(heard.time), STEP)
+    for part in PARTS:
+        history = np.array([step[f"{part}_dba"] for step in summary["history"]])
+        said = summary["levels"][part]
+        assert said["lamax_dba"] == pytest.approx(history.max())
+        exposure = 10 * np.log10(np.sum(10 ** (history / 10)) * STEP)
+        assert said["sel_dba"] == pytest.approx(exposure)
+    assert np.all(heard.mean_square["total"] >= heard.mean_square["broadband"])
+
+
+def test_distance_elevation_and_doppler_are_those_of_the_geometry(heard):
+    for step in heard.to_dict()["history"]:
+        emitted = step["time"] - step["distance"] / 340.294
+        assert step["distance"] == pytest.approx(np.hypot(HEIGHT, 8.0 * emitted), rel=1e-9)
+        ahead = -8.0 * emitted / step["distance"]
+        assert step["elevation_deg"] == pytest.approx(np.degrees(np.arcsin(ahead)), abs=1e-6)
+        assert step["doppler"] == pytest.approx(1 / (1 - 8.0 / 340.294 * ahead), rel=1e-9)
+
+
+def test_a_short_flyover_has_no_epnl_and_says_why(found):
+    summary = fly_over(PROPELLER, found, Flight(HEIGHT, duration=3.0), fidelity=COARSE).to_dict()
+    assert summary["epnl"] is None
+    assert "must begin and end 10 dB below its maximum" in summary["epnl_failure"]
+
+
+def test_tripped_blades_and_absorbing_air_are_quieter(found, heard):
+    absorbed = fly_over(PROPELLER, found, Flight(HEIGHT), fidelity=COARSE)
+    tripped = fly_over(PROPELLER, found, Flight(HEIGHT), trip="heavy", fidelity=COARSE)
+    loud, less, least = (one.level_dba().max() for one in (heard, absorbed, tripped))
+    assert loud > less > least
+
+
+def test_the_sound_is_as_loud_as_its_levels_say(found):
+    flight = Flight(HEIGHT, sideline=5.0, microphone_height=1.2, duration=12.0)
+    heard = fly_over(PROPELLER, found, flight, sound=True, fidelity=COARSE)
+    assert heard.pressure.size == 12 * SAMPLE_RATE
+    weighted = a_weighted(heard.pressure, SAMPLE_RATE)
+    _, recorded = short_time_level_db(weighted, SAMPLE_RATE, STEP)
+    # Steps fade into each other: by squares of sines a step keeps 1/2 + 1/pi, its neighbours share
+    # the rest. The noise of half a second is random.
+    power = np.pad(10 ** (heard.level_dba() / 10), 1, "edge")
+    own = 0.5 + 1 / np.pi
+    faded = own * power[1:-1] + 0.5 * (1 - own) * (power[:-2] + power[2:])
+    np.testing.assert_allclose(recorded, 10 * np.log10(faded), atol=0.4)
+    energy = 10 * np.log10(np.sum(10 ** (recorded / 10)) * STEP)
+    assert energy == pytest.approx(heard.to_dict()["levels"]["total"]["sel_dba"], abs=0.1)
+
+
+@pytest.mark.parametrize(
+    ("wrong", "message"),
+    [
+        ({"height": 0.0}, "height of flight must be positive"),
+        ({"sideline": np.nan}, "sideline distance must be finite"),
+        ({"microphone_height": 20.0}, "microphone must be between the ground and the flight"),
+        ({"duration": 1.0}, "duration must be 2 s or more; it is 1"),
+    ],
+)
+def test_flights_that_are_none(wrong, message):
+    with pytest.raises(ValueError, match=message):
+        dataclasses.replace(Flight(HEIGHT), **wrong)
+
+
+def test_flyovers_that_are_none(found):
+    for changed, message in (
+        (dataclasses.replace(found, speed=0.0), "speed of a flyover must be positive"),
+        (dataclasses.replace(found, rpm=0.0), "rpm of a flyover must be positive"),
+    ):
+        with pytest.raises(ValueError, match=message):
+            fly_over(PROPELLER, changed, Flight(HEIGHT), fidelity=COARSE)
+    with pytest.raises(ValueError, match="a flyover of 3000 s is too long: at most 1200 s"):
+        fly_over(PROPELLER, found, Flight(2000.0), fidelity=COARSE)

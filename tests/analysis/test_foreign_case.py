@@ -1,0 +1,195 @@
+"""Cases: the same pressure as the Fourier form, and what is not computed says so."""
+
+from __future__ import annotations
+
+import dataclasses
+import warnings
+
+import jax.numpy as jnp
+import numpy as np
+import pytest
+
+from propmdao.acoustics.sources.formulation1a import tones
+from propmdao.analysis.foreign_case import run_case
+from propmdao.formats.wopwop.binary import WopwopFileError
+from propmdao.formats.wopwop.namelists import read_namelists, write_namelists
+from propmdao.formats.wopwop.sources import thickness_sources
+from propmdao.formats.wopwop.zones import Zone
+from propmdao.records.loads import PointLoads
+from propmdao.records.panels import Panels
+
+OMEGA, N_HARMONICS = 100.0, 3
+OBSERVERS = np.array([[3.0, 0.0, -2.0], [4.0, 0.0, -2.0]])
+
+
+@pytest.fixture
+def reference(reference_at):
+    return reference_at(0.0)
+
+
+@pytest.fixture
+def reference_at(geometry, loading):
+    """Tones of the same rotor: lengths of the line by the trapezoidal rule, forces reversed."""
+    r = geometry.zones[1].values[0, 0].ravel().astype(float)
+    length = np.full(r.size, r[1] - r[0]) * np.where(np.isin(np.arange(r.size), [0, 8]), 0.5, 1)
+    force = -loading.zones[0].values[0, :, :, 0].T * length[:, None]
+    loads = PointLoads(jnp.asarray(np.stack([r, 0 * r, 0 * r], -1)), jnp.asarray(force))
+    box = thickness_sources(geometry.zones[0], np.zeros(1))
+    panels = Panels(box.position[0], box.vector[0])
+
+    def at(speed):
+        return tones(panels, loads, 2, OMEGA, speed, 1.2, 340.0, OBSERVERS, N_HARMONICS)
+
+    return at
+
+
+def amplitudes(pressure):
+    spectrum = np.conj(np.fft.rfft(pressure)) / pressure.shape[-1]
+    return spectrum[:, 2 * np.arange(1, N_HARMONICS + 1)]
+
+
+def agree(product, expected):
+    np.testing.assert_allclose(
+        amplitudes(product), expected, atol=2e-4 * np.abs(expected[:, 0]).min()
+    )
+
+
+def test_panels_of_a_closed_box_enclose_its_volume(geometry):
+    box = thickness_sources(geometry.zones[0], np.zeros(1))
+    np.testing.assert_allclose(box.vector[0].sum(axis=0), 0, atol=1e-8)
+    volume = np.sum(box.position[0] * box.vector[0]) / 3
+    assert volume == pytest.approx(0.3 * 0.04 * 0.01, rel=1e-6)
+
+
+def test_constant_loads(make_case, reference):
+    (result,) = run_case(make_case())
+    assert (result.case, result.observers) == ("case.nam", "microphones")
+    np.testing.assert_allclose(result.pressure.position[:, 0], OBSERVERS)
+    agree(result.pressure.thickness, reference.thickness)
+    agree(result.pressure.loading, reference.loading)
+    agree(result.pressure.total, reference.total)
+    assert np.abs(result.pressure.total.mean(axis=1)).max() < 1e-12  # high-pass
+
+
+def changing(loading, keys, period, force):
+    """The same loads, given by (n_times, 3)."""
+    values = np.float32(force)[:, :, None, None] * np.ones((9, 1), np.float32)
+    zone = Zone(
+        "line loads", values, np.float32(keys), None if period is None else np.float32(period)
+    )
+    return dataclasses.replace(loading, zones=(zone,))
+
+
+@pytest.mark.parametrize("last_repeats", [True, False])
+def test_periodic_loads_in_the_grounds_frame(make_case, loading, reference, last_repeats):
+    """Loads constant on the blade turn in the ground's frame; each blade has its own key offset."""
+    keys = np.linspace(0, 2 * np.pi, 73)[: 73 if last_repeats else 72]
+    force = np.stack([np.sin(keys), -np.cos(keys), 10 + 0 * keys], -1)
+    unsteady = changing(loading, keys, 2 * np.pi / OMEGA, force)
+    (result,) = run_case(make_case(loading=dataclasses.replace(unsteady, frame=1)))
+    agree(result.pressure.loading, reference.loading)
+
+
+def test_aperiodic_loads(make_case, loading, reference):
+    times = np.linspace(-0.1, 0.1, 9)
+    table = changing(loading, times, None, [[0.0, -1.0, 10.0]] * 9)
+    (result,) = run_case(make_case(loading=table))
+    agree(result.pressure.loading, reference.loading)
+
+
+def test_aperiodic_loads_that_end_too_early(make_case, loading):
+    table = changing(loading, np.linspace(0, 0.02, 9), None, [[0.0, -1.0, 10.0]] * 9)
+    with pytest.raises(
+        WopwopFileError, match=r"zone 2 'line': table over 0 \.\.\. 0.02 s is asked"
+    ):
+        run_case(make_case(loading=table))
+
+
+def test_a_rotor_and_observers_that_fly_along(make_case, reference_at):
+    folder = make_case(ObserverIn={"nbBase": 1})
+    groups = [(group.name, dict(group.values)) for group in read_namelists(folder / "case.nam")]
+    fly = ("cb", {"TranslationType": "KnownFunction", "VH": [0.0, 0.0, 20.0]})
+    names = [name for name, _ in groups]
+    rotor, observers = names.index("containerin"), names.index("observerin")
+    groups[rotor][1]["nbbase"] = 2
+    groups[rotor + 1 : rotor + 1] = [fly]
+    groups[observers + 1 : observers + 1] = [fly]
+    write_namelists(folder / "case.nam", groups)
+    (result,) = run_case(folder)
+    way = 20.0 * result.pressure.time[0, -1]
+    np.testing.assert_allclose(result.pressure.position[0, -1], OBSERVERS[0] + [0, 0, way])
+    agree(result.pressure.total, reference_at(20.0).total)
+
+
+def test_unknown_keys_are_named(make_case):
+    folder = make_case(EnvironmentIn={"colour": 3})
+    with pytest.warns(UserWarning, match="&environmentin: colour is not known") as caught:
+        run_case(folder)
+    assert len(caught) == 1
+
+
+def test_a_case_that_is_wholly_understood_warns_of_nothing(make_case):
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        run_case(make_case())
+
+
+@pytest.mark.parametrize(
+    ("changes", "message"),
+    [
+        ({"EnvironmentConstants": {"c": -1.0}}, "rho and c must be positive"),
+        ({"EnvironmentConstants": {"rho": "air"}}, "rho must be a number; it is 'air'"),
+        ({"ObserverIn": {"xMin": float("nan")}}, "xmin must be a number; it is nan"),
+        ({"EnvironmentIn": {"nbSourceContainers": 2}}, "&containerin is missing"),
+        ({"EnvironmentIn": {"nbObserverContainers": 2}}, "&observerin expected here"),
+        ({"ObserverIn": {"nt": 1}}, "nt must be 2 or more"),
+        ({"ObserverIn": {"attachedTo": "tail"}}, "attachedTo 'tail': there is no such container"),
+        ({"ObserverIn": {"attachedTo": "Blade 1"}}, "observers must be fixed or in uniform motion"),
+        ({"omega": 800.0}, "sources must be slower than sound"),
+        (
+            {"ObserverIn": {"fileName": "grid.xyz"}},
+            r"observers of a file \(fileName\) are not read",
+        ),
+        (
+            {"ObserverIn": {"xMin": 0.2, "zMin": 0.0}},
+            "observer 1 comes to 0.2 m from the centre of the sources; the region's radius is 0.5",
+        ),
+    ],
+)
+def test_bad_cases_are_one_clear_line(make_case, changes, message):
+    with pytest.raises(WopwopFileError, match=message) as caught:
+        run_case(make_case(**changes))
+    assert "\n" not in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "",
+        "solid blade\n",
+        "&casename\n caseNameFile = 'x.nam'",
+        "&casename\n caseNameFile = 'x\n/\n",
+    ],
+)
+def test_foreign_namelists(tmp_path, text, capsys):
+    (tmp_path / "cases.nam").write_text(text)
+    with pytest.raises(WopwopFileError, match=r"cases.nam: not a Fortran namelist file"):
+        run_case(tmp_path)
+    assert capsys.readouterr().out == ""
+
+
+def test_missing_files(tmp_path, make_case):
+    with pytest.raises(WopwopFileError, match=r"nowhere.cases.nam: No such file"):
+        run_case(tmp_path / "nowhere")
+    folder = make_case()
+    (folder / "loading.dat").unlink()
+    with pytest.raises(WopwopFileError, match=r"loading.dat: No such file"):
+        run_case(folder)
+
+
+def test_loads_that_do_not_fit(make_case, loading):
+    short = Zone("line loads", loading.zones[0].values[:, :, :5])
+    with pytest.raises(WopwopFileError, match="data of zone 'line loads' must be 1 x 9 .* 1 x 5"):
+        run_case(make_case(loading=dataclasses.replace(loading, zones=(short,))))
+    with pytest.raises(WopwopFileError, match="mixed frame"):
+        run_case(make_case(loading=dataclasses.replace(loading, frame=2)))

@@ -1,0 +1,167 @@
+"""Measurements are read whole, and compared as the documentation says."""
+
+from __future__ import annotations
+
+import dataclasses
+import tomllib
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+
+from propmdao.analysis.single_point import analyze
+from propmdao.analysis.wind_tunnel import (
+    MeasurementError,
+    Points,
+    WindTunnel,
+    calibrated_twist_deg,
+    computed,
+    errors,
+    read_wind_tunnel,
+)
+from propmdao.formats.propellers import load_propeller
+from propmdao.records.fidelity import Fidelity
+
+FILE = """
+source = "made up"
+[static]
+rpm = [2000, 4000]
+CT = [0.10, 0.12]
+CP = [0.04, 0.05]
+[[run]]
+rpm = 3000
+J = [0.2, 0.4]
+CT = [0.08, 0.05]
+CP = [0.04, 0.03]
+[[run]]
+rpm = 4000
+J = [0.6]
+CT = [0.01]
+CP = [0.02]
+"""
+COARSE = Fidelity(n_chordwise=2, n_spanwise=4, n_contour=9, n_surface_span=5, n_harmonics=1)
+
+
+def points(rpm, j, ct, cp) -> Points:
+    return Points(*(np.array(values, float) for values in (rpm, j, ct, cp)))
+
+
+@pytest.fixture
+def file(tmp_path):
+    path = tmp_path / "measured.toml"
+    path.write_text(FILE)
+    return path
+
+
+def test_runs_are_read_one_after_the_other(file):
+    tunnel = read_wind_tunnel(file)
+    assert tunnel.source == "made up"
+    assert_allclose(tunnel.static.rpm, [2000, 4000])
+    assert_allclose(tunnel.static.J, 0.0)
+    assert_allclose(tunnel.dynamic.rpm, [3000, 3000, 4000])
+    assert_allclose(tunnel.dynamic.J, [0.2, 0.4, 0.6])
+    assert_allclose(tunnel.dynamic.eta, [0.4, 0.4 * 5 / 3, 0.3])
+
+
+def test_points_are_chosen_by_slice_and_by_mask(file):
+    dynamic = read_wind_tunnel(file).dynamic
+    assert_allclose(dynamic[1:].J, [0.4, 0.6])
+    assert_allclose(dynamic[dynamic.rpm == 4000].CT, [0.01])
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "message"),
+    [
+        ("J = [0.6]\n", "", "'J' is missing"),
+        ("CP = [0.02]", "CP = [0.02, 0.03]", "must have equally many numbers"),
+        ("CT = [0.01]", 'CT = ["much"]', "could not convert string"),
+        ("rpm = 3000", "rpm = ", "Invalid value"),
+        ('source = "made up"', "", "'source' is missing"),
+    ],
+)
+def test_wrong_file_is_one_line_that_begins_with_the_file(file, old, new, message):
+    file.write_text(FILE.replace(old, new))
+    with pytest.raises(MeasurementError, match=message) as caught:
+        read_wind_tunnel(file)
+    assert str(caught.value).startswith(str(file))
+    assert "\n" not in str(caught.value)
+
+
+def test_file_that_is_not_there(tmp_path):
+    with pytest.raises(MeasurementError, match="cannot be read: No such file"):
+        read_wind_tunnel(tmp_path / "none.toml")
+
+
+def test_errors_are_relative_in_hover_and_of_the_static_coefficient_in_flight(file):
+    tunnel = read_wind_tunnel(file)
+    more = points(tunnel.static.rpm, [0, 0], [0.11, 0.12], [0.03, 0.05])
+    fast = points(tunnel.dynamic.rpm, tunnel.dynamic.J, [0.08, 0.061, -0.01], [0.04, 0.03, 0.0155])
+    found = errors(tunnel, more, fast)
+    assert_allclose(found.static_ct, [0.1, 0.0], atol=1e-12)
+    assert_allclose(found.static_cp, [-0.25, 0.0], atol=1e-12)
+    assert_allclose(found.low_ct, [0.0, 0.1], atol=1e-12)
+    assert_allclose(found.low_cp, [0.0, 0.0], atol=1e-12)
+    assert_allclose(found.high_ct, [-0.02 / 0.11])
+    assert_allclose(found.high_cp, [-0.0045 / 0.045])
+    assert found.trend == pytest.approx(0.5)  # 0.01 over 2000 rpm, 0.02 measured
+
+
+def test_computed_is_the_analysis_of_every_point():
+    propeller = load_propeller("apcsf_11x4.7")
+    at = points([3000, 4000], [0.0, 0.4], [np.nan] * 2, [np.nan] * 2)
+    found = computed(propeller, at, 1.0, fidelity=COARSE)
+    for i, speed in enumerate((0.0, 0.4 * 4000 / 60 * 0.2794)):
+        one = analyze(
+            propeller, rpm=at.rpm[i], speed=speed, twist_offset_deg=1.0, fidelity=COARSE
+        ).coefficients
+        assert_allclose((found.CT[i], found.CP[i]), (one.CT, one.CP), rtol=1e-12)
+        assert_allclose(found.J[i], one.J, atol=1e-12)
+
+
+def test_point_without_convergence_is_nan(monkeypatch):
+    def never(*args, **settings):
+        found = analyze(*args, **settings)
+        steady = dataclasses.replace(found.steady, converged=np.asarray(False))
+        return dataclasses.replace(found, steady=steady)
+
+    monkeypatch.setattr("propmdao.analysis.wind_tunnel.analyze", never)
+    at = points([3000], [0.0], [0.1], [0.04])
+    found = computed(load_propeller("apcsf_11x4.7"), at, fidelity=COARSE)
+    assert np.isnan([found.CT, found.CP]).all()
+
+
+def thrust_grows_with_twist(propeller, at, twist_deg):
+    """A propeller with CT 0.1 and 0.01 more for every degree, and a bend in it."""
+    ct = 0.1 + 0.01 * twist_deg + 1e-4 * twist_deg**2
+    return dataclasses.replace(at, CT=np.full_like(at.rpm, ct))
+
+
+def test_calibration_brings_the_mean_relative_error_to_zero():
+    static = points([2000, 4000], [0, 0], [0.11, 0.13], [0.04, 0.05])
+    twist = calibrated_twist_deg(None, static, thrust_grows_with_twist)
+    ct = thrust_grows_with_twist(None, static, twist).CT
+    assert np.mean(ct / static.CT - 1.0) == pytest.approx(0.0, abs=1e-4)
+
+
+@pytest.mark.filterwarnings("ignore:Tolerance of 1.0 reached:RuntimeWarning")
+def test_calibration_that_cannot_be_is_refused():
+    static = points([2000], [0], [0.11], [0.04])
+
+    def stuck(propeller, at, twist_deg):
+        return dataclasses.replace(at, CT=np.full_like(at.rpm, 0.1))
+
+    with pytest.raises(MeasurementError, match="no twist offset .* 'apcsf_11x4.7'"):
+        calibrated_twist_deg(load_propeller("apcsf_11x4.7"), static, stuck)
+
+
+def test_measurements_that_ship_are_complete(checkout):
+    files = sorted((checkout / "studies" / "measurements").glob("uiuc_*.toml"))
+    assert len(files) == 3
+    for path in files:
+        tunnel = read_wind_tunnel(path)
+        assert isinstance(tunnel, WindTunnel)
+        assert tunnel.static.rpm.size == 16
+        runs = tomllib.loads(path.read_text())["run"]
+        assert tunnel.dynamic.rpm.size == sum(len(run["J"]) for run in runs)
+        assert (tunnel.static.CT > 0.09).all()
+        assert np.isfinite([*tunnel.dynamic.CT, *tunnel.dynamic.CP]).all()

@@ -1,0 +1,199 @@
+"""Polars from files: what is read, and one clear line for what is wrong."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import jax.numpy as jnp
+import numpy as np
+import pytest
+
+from propmdao.aerodynamics.sections.polars.table import PolarError, PolarTable, section_coefficients
+from propmdao.aerodynamics.sections.polars.user_table import Polar, table_from_polars
+from propmdao.formats.polars import read_c81, read_polar, read_polars
+
+XFLR5 = """xflr5 v6.61
+
+ Calculated polar for: FLAT 6
+
+ 1 1 Reynolds number fixed          Mach number fixed
+
+ xtrf =   1.000 (top)        1.000 (bottom)
+ Mach =   0.000     Re =     0.060 e 6     Ncrit =   7.000
+
+  alpha     CL        CD       CDp       Cm    Top Xtr Bot Xtr   Cpmin    Chinge    XCp
+ ------- -------- --------- --------- -------- ------- ------- -------- --------- ---------
+"""
+ANGLES = np.arange(-6.0, 10.5, 1.0)
+
+
+def lift(degrees: np.ndarray) -> np.ndarray:
+    return 0.3 + 0.1 * degrees
+
+
+def drag(degrees: np.ndarray) -> np.ndarray:
+    return 0.02 + 1e-4 * degrees**2
+
+
+def rows(degrees: np.ndarray = ANGLES) -> list[str]:
+    return [
+        f"{a:8.3f} {lift(a):8.4f} {drag(a):9.5f} 0.01 -0.0500 1.0 1.0 -1.0 0.0 0.0 0.0 0.3\n"
+        for a in degrees
+    ]
+
+
+def written(folder: Path, text: str, name: str = "flat.txt") -> Path:
+    path = folder / name
+    path.write_text(text)
+    return path
+
+
+def at(table: PolarTable, degrees: np.ndarray, re: float = 6e4) -> np.ndarray:
+    one = PolarTable(table.alpha, table.log_re, jnp.repeat(table.values, degrees.size, axis=0))
+    found = section_coefficients(one, jnp.radians(degrees), jnp.full(degrees.size, re))
+    return np.stack([np.asarray(values) for values in found])
+
+
+def test_xflr5_polar(tmp_path: Path) -> None:
+    # Rows are written from 0 up and then from 0 down.
+    order = [*rows(ANGLES[6:]), *rows(ANGLES[5::-1])]
+    polar = read_polar(written(tmp_path, XFLR5 + "".join(order)))
+    assert (polar.name, polar.re, polar.mach, polar.n_crit) == ("FLAT 6", 6e4, 0.0, 7.0)
+    np.testing.assert_allclose(np.degrees(polar.alpha), ANGLES, atol=1e-12)
+    np.testing.assert_allclose(polar.cl, lift(ANGLES), atol=1e-12)
+    np.testing.assert_allclose(polar.cd, drag(ANGLES), atol=1e-12)
+    np.testing.assert_array_equal(polar.cm, -0.05)
+
+
+def test_xfoil_polar(tmp_path: Path) -> None:
+    header = XFLR5.replace("xflr5 v6.61", "       XFOIL         Version 6.99")
+    header = header.replace("Cm    Top Xtr Bot Xtr", " CM     Top_Xtr  Bot_Xtr")
+    assert read_polar(written(tmp_path, header + "".join(rows()))).cm[0] == -0.05
+
+
+def test_a_polar_is_met_where_it_holds_and_continued_outside(tmp_path: Path) -> None:
+    table = read_polars(written(tmp_path, XFLR5 + "".join(rows())))
+    cl, cd, cm = at(table, ANGLES)
+    np.testing.assert_allclose(cl, lift(ANGLES), atol=1e-9)
+    np.testing.assert_allclose(cd, drag(ANGLES), rtol=1e-9)
+    np.testing.assert_allclose(cm, -0.05, atol=1e-9)
+    around = at(table, np.linspace(-180.0, 180.0, 721))
+    assert np.isfinite(around).all()
+    assert around[1].max() == pytest.approx(2.01, abs=1e-3)
+
+
+def test_one_reynolds_number_holds_for_all(tmp_path: Path) -> None:
+    table = read_polars(written(tmp_path, XFLR5 + "".join(rows())))
+    np.testing.assert_allclose(at(table, ANGLES, 1e3), at(table, ANGLES, 1e7), rtol=1e-12)
+
+
+def test_reynolds_numbers_are_sorted_and_met(tmp_path: Path) -> None:
+    text = XFLR5 + "".join(rows())
+    high = text.replace("0.060 e 6", "0.240 e 6").replace(" 0.02", " 0.01")
+    table = read_polars(written(tmp_path, high, "a.txt"), written(tmp_path, text, "b.txt"))
+    np.testing.assert_allclose(np.exp(table.log_re), [6e4, 2.4e5])
+    assert at(table, np.zeros(1), 6e4)[1, 0] == pytest.approx(0.02)
+    assert at(table, np.zeros(1), 2.4e5)[1, 0] == pytest.approx(0.01)
+    assert at(table, np.zeros(1), 1.2e5)[1, 0] == pytest.approx(0.01 * 2**0.5)  # logarithmic
+    with pytest.raises(PolarError, match="'FLAT 6' and 'FLAT 6' are equal: 60000"):
+        read_polars(tmp_path / "b.txt", tmp_path / "b.txt")
+
+
+BODY = "".join(rows())
+WRONG = {
+    "no columns": (XFLR5.replace("alpha", "angle") + BODY, "no line names the columns alpha, CL"),
+    "no drag": (XFLR5.replace(" CD ", " XX ") + BODY, "line 10: missing column 'cd'; found: alpha"),
+    "no Re": (XFLR5.replace("Re =", "Rn =") + BODY, "the header has no 'Re = ...'"),
+    "no number": (XFLR5 + BODY.replace("0.4000", "0.4x00"), "line 19, column 'cl': '0.4x00' is no"),
+    "not finite": (XFLR5 + BODY.replace("0.4000", "nan"), "line 19, column 'cl': 'nan' is not fin"),
+    "short row": (XFLR5 + BODY + " 11.0 1.4\n", "line 29: 2 values, too few for its columns"),
+    "few rows": (XFLR5 + "".join(rows(ANGLES[6:9])), "needs at least 5 angles; it has 3"),
+    "gap": (
+        XFLR5 + "".join(rows(np.array([-6.0, -5.0, 0.5, 1.0, 2.0, 3.0, 4.0]))),
+        "alpha has a gap from -5 to 0.5 deg; steps must not exceed 5 deg",
+    ),
+    "narrow": (XFLR5 + "".join(rows(ANGLES[6:])), "must span at least -1..4 deg; it spans 0..10"),
+    "twice": (XFLR5 + BODY + rows()[3], "alpha -3 deg is given twice"),
+    "drag counts": (
+        XFLR5 + "".join(f" {a:g} {lift(a):g} {1e4 * drag(a):g} 0 0\n" for a in ANGLES),
+        r"cd must be below 3; it is 300 at 10 deg \(in drag counts\?\)",
+    ),
+    "radians": (
+        XFLR5
+        + "".join(f" {np.radians(a):.6f} {lift(a):g} 0.02 0 0\n" for a in np.arange(-60, 300, 5.0)),
+        "cl changes by 5.73 per degree: alpha seems to be in radians",
+    ),
+    "no drag at all": (
+        XFLR5 + BODY.replace(" 0.02000", " 0.00000"),
+        "cd must be positive; it is 0",
+    ),
+    "Re in millions": (XFLR5.replace("0.060 e 6", "0.060") + BODY, "at least 1000; it is 0.06"),
+    "Mach": (XFLR5.replace("Mach =   0.000", "Mach =   0.600") + BODY, "within 0..0.3.*it is 0.6"),
+}
+
+
+@pytest.mark.parametrize("case", WRONG)
+def test_a_wrong_file_is_told_in_one_line(tmp_path: Path, case: str) -> None:
+    text, message = WRONG[case]
+    with pytest.raises(PolarError, match=message) as caught:
+        read_polar(written(tmp_path, text))
+    assert str(caught.value).startswith(f"{tmp_path / 'flat.txt'}: ")
+    assert "\n" not in str(caught.value)
+
+
+def test_a_missing_file_is_told(tmp_path: Path) -> None:
+    with pytest.raises(PolarError, match="none.txt: cannot be read: No such file"):
+        read_polar(tmp_path / "none.txt")
+    with pytest.raises(PolarError, match="at least one polar"):
+        table_from_polars([])
+
+
+def test_arrays_of_a_polar_belong_together() -> None:
+    with pytest.raises(PolarError, match="cl must be 6 finite numbers, one per angle"):
+        Polar("x", 1e5, 0.0, np.radians(np.arange(-2, 10, 2.0)), *(np.ones(5),) * 3)
+
+
+CIRCLE = np.array([-180.0, -90.0, -30.0, *range(-10, 12, 2), 30.0, 90.0, 180.0])
+
+
+def c81(n_mach: int = 2, angles: np.ndarray = CIRCLE) -> str:
+    """C81 file of lift sin(2 a), drag 0.01 + 2 sin^2, no moment; Mach number adds 1."""
+    lines = ["FLAT PLATE".ljust(30) + f"{n_mach:2d}{angles.size:2d}" * 3]
+    radians = np.radians(angles)
+    tables = np.sin(2 * radians), 0.01 + 2 * np.sin(radians) ** 2, 0 * radians
+
+    def fields(first: str, numbers: list[float]) -> None:
+        for k in range(0, len(numbers), 9):
+            block = "".join(f"{number:7.3f}" for number in numbers[k : k + 9])
+            lines.append((first if k == 0 else " " * 7) + block)
+
+    for table in tables:
+        fields(" " * 7, [0.05 * k for k in range(n_mach)])
+        for angle, value in zip(angles, table, strict=True):
+            fields(f"{angle:7.2f}", [value + k for k in range(n_mach)])
+    return "\n".join(lines) + "\n"
+
+
+@pytest.mark.parametrize("n_mach", [1, 2, 9, 11])
+def test_c81_is_read_at_its_lowest_mach_number(tmp_path: Path, n_mach: int) -> None:
+    table = read_c81(written(tmp_path, c81(n_mach), "flat.c81"))
+    cl, cd, cm = at(table, CIRCLE)
+    radians = np.radians(CIRCLE)
+    np.testing.assert_allclose(cl, np.sin(2 * radians), atol=6e-4)  # three decimals
+    np.testing.assert_allclose(cd, 0.01 + 2 * np.sin(radians) ** 2, atol=6e-4)
+    np.testing.assert_allclose(cm, 0.0, atol=1e-12)
+
+
+def test_a_wrong_c81_file_is_told_in_one_line(tmp_path: Path) -> None:
+    text = c81()
+    for wrong, message in (
+        ("", "line 1: columns 31-42 must hold six counts"),
+        (text.replace(" 217", " 0 0", 1), "line 1: columns 31-42 must hold six counts"),
+        ("\n".join(text.splitlines()[:40]), "the moment table needs 17 angles up to line 55"),
+        (text.replace("  0.000  1.000", "  0.0x0  1.000", 1), "columns 8-14: '0.0x0' is no number"),
+        (text.replace("  0.010", " -0.010"), "cd must be positive"),
+    ):
+        with pytest.raises(PolarError, match=message) as caught:
+            read_c81(written(tmp_path, wrong, "flat.c81"))
+        assert str(caught.value).startswith(f"{tmp_path / 'flat.c81'}: ")
+        assert "\n" not in str(caught.value)

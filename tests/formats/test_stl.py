@@ -1,0 +1,70 @@
+"""Triangles of a rotor's skin: closed, outward, of the right volume, as STL has them."""
+
+from __future__ import annotations
+
+from collections import Counter
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from propmdao.formats.propellers import load_propeller
+from propmdao.formats.stl import rotor_triangles, write_stl
+from propmdao.geometry.blade import Blade, span_interpolation
+from propmdao.geometry.surface import surface_nodes, surface_panels, surface_span
+
+
+def skin(name: str, n_contour: int = 21, n_span: int = 12) -> np.ndarray:
+    propeller = load_propeller(name)
+    stations = propeller.r_over_R
+    span = span_interpolation(stations, surface_span(stations[0], n_span))
+    return np.array(surface_nodes(Blade.from_propeller(propeller), span, n_contour))
+
+
+@pytest.fixture(params=["apcsf_11x4.7", "sharp"])
+def nodes(request: pytest.FixtureRequest) -> np.ndarray:
+    """Of a blade as it is, and with both sides joined at a sharp trailing edge."""
+    if request.param != "sharp":
+        return skin(request.param)
+    nodes = skin("apcsf_11x4.7")
+    nodes[[0, -1]] = 0.5 * (nodes[0] + nodes[-1])
+    return nodes
+
+
+def directed_edges(triangles: np.ndarray) -> Counter[tuple[bytes, bytes]]:
+    corners = [[corner.tobytes() for corner in triangle] for triangle in triangles]
+    return Counter((t[k], t[(k + 1) % 3]) for t in corners for k in range(3))
+
+
+@pytest.mark.parametrize("n_blades", [1, 3])
+def test_every_edge_is_run_once_in_either_direction(nodes: np.ndarray, n_blades: int) -> None:
+    edges = directed_edges(rotor_triangles(nodes, n_blades))
+    assert set(edges.values()) == {1}
+    assert all((end, start) in edges for start, end in edges)
+
+
+def test_the_volume_is_that_of_the_blades_and_positive() -> None:
+    nodes = skin("apcsf_11x4.7", 65, 80)
+    a, b, c = np.moveaxis(rotor_triangles(nodes, 3).astype(float), 1, 0)
+    volume = np.sum(a * np.cross(b, c)) / 6.0
+    panels = surface_panels(nodes)
+    blade = float((panels.center * panels.vector_area).sum()) / 3.0
+    # Quadrilaterals of a twisted blade are warped, triangles are not: measured 0.14 %, and 3 %
+    # with a fifth of the points.
+    assert volume == pytest.approx(3.0 * blade, rel=2e-3)
+    assert volume > 0.0
+
+
+def test_the_file_is_binary_stl(nodes: np.ndarray, tmp_path: Path) -> None:
+    """80 bytes of title, the count, then 50 bytes each: normal, corners, attribute."""
+    triangles = rotor_triangles(nodes, 2)
+    write_stl(tmp_path / "blade.stl", triangles, "blade \u00b5, metres")
+    raw = (tmp_path / "blade.stl").read_bytes()
+    assert len(raw) == 84 + 50 * len(triangles)
+    assert raw[:80].decode("ascii").strip() == "blade ?, metres"
+    assert not raw.startswith(b"solid")  # that would be a text file
+    assert int.from_bytes(raw[80:84], "little") == len(triangles)
+    numbers = np.frombuffer(raw[84 : 84 + 48], "<f4").reshape(4, 3)
+    np.testing.assert_array_equal(numbers[1:], triangles[0])
+    outward = np.cross(numbers[2] - numbers[1], numbers[3] - numbers[1])
+    np.testing.assert_allclose(numbers[0], outward / np.linalg.norm(outward), atol=1e-6)

@@ -1,0 +1,37 @@
+"""One decorator for functions called alone, within others, and by transformations of JAX."""
+
+from functools import partial
+
+import jax
+import jax.numpy as jnp
+
+from propmdao.runtime.compilation import compiled
+
+
+@partial(compiled, static_argnames="power")
+def raised(x, power):
+    """x to a power."""
+    assert isinstance(x, jax.core.Tracer)  # compiled, not evaluated
+    return x**power
+
+
+def test_alone_within_and_transformed():
+    assert raised(3.0, power=2) == raised(3.0, 2) == 9.0  # static by name and by place
+    assert jax.jit(lambda x: raised(x, 2) + raised(2.0, 2))(3.0) == 13.0
+    assert jax.grad(raised)(3.0, 2) == 6.0
+    assert jax.vmap(partial(raised, power=3))(jnp.arange(3.0)).tolist() == [0.0, 1.0, 8.0]
+    assert jax.lax.scan(lambda c, x: (raised(c, 2), x), 2.0, jnp.zeros(3))[0] == 256.0
+    assert raised.__doc__ == "x to a power." and raised.__name__ == "raised"
+
+
+def test_compiled_once():
+    traced = []
+
+    @compiled
+    def f(x):
+        traced.append(x)
+        return 2.0 * x
+
+    for x in range(5):
+        assert f(float(x)) == 2.0 * x
+    assert len(traced) == 1
