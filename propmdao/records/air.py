@@ -2,26 +2,98 @@
 
 from __future__ import annotations
 
+import math
+
 from propmdao.records.pytrees import Scalar, record
+
+# The International Standard Atmosphere (ISO 2533): the troposphere and Sutherland's law.
+_GAS_CONSTANT, _HEAT_RATIO, _GRAVITY = 287.05287, 1.4, 9.80665  # J/(kg K), 1, m/s2
+_SEA_LEVEL_TEMPERATURE, _SEA_LEVEL_PRESSURE, _LAPSE_RATE = 288.15, 101325.0, 0.0065  # K, Pa, K/m
+_SUTHERLAND_FACTOR, _SUTHERLAND_TEMPERATURE = 1.458e-6, 110.4  # kg/(m s K^0.5), K
+_TROPOPAUSE = 11000.0  # m
 
 
 @record
 class Air:
-    """State of the air between the rotor and the observer; the international standard's, humid.
+    """State of the air; by default that of the standard atmosphere at sea level, humid.
 
     Attributes
     ----------
+    density : scalar
+        [kg/m^3].
+    sound_speed : scalar
+        [m/s].
+    dynamic_viscosity : scalar
+        [Pa s].
     temperature : scalar
-        [K].
-    relative_humidity : scalar
-        0 ... 1, of the vapour pressure over water.
+        Of the air that absorbs sound [K]; it does not change the speed of sound, see `standard`.
     pressure : scalar
-        [Pa].
+        Of the air that absorbs sound [Pa].
+    relative_humidity : scalar
+        0 ... 1, of the vapour pressure over water; absorption depends on it.
     """
 
+    density: Scalar = 1.225
+    sound_speed: Scalar = 340.294
+    dynamic_viscosity: Scalar = 1.789e-5
     temperature: Scalar = 288.15
-    relative_humidity: Scalar = 0.7
     pressure: Scalar = 101325.0
+    relative_humidity: Scalar = 0.7
+
+    @property
+    def kinematic_viscosity(self) -> Scalar:
+        """Dynamic viscosity over density [m^2/s]."""
+        return self.dynamic_viscosity / self.density
+
+    @classmethod
+    def standard(
+        cls,
+        altitude: float = 0.0,
+        temperature_offset: float = 0.0,
+        relative_humidity: float = 0.7,
+    ) -> Air:
+        """Air of the International Standard Atmosphere.
+
+        Parameters
+        ----------
+        altitude : float
+            Geopotential altitude, 0 to 11,000 m [m].
+        temperature_offset : float
+            Warmer than the standard by so much, at the standard's pressure [K].
+        relative_humidity : float
+            0 ... 1; the density is that of dry air.
+
+        Returns
+        -------
+        Air
+            Density, speed of sound, viscosity, temperature and pressure that belong together.
+
+        Raises
+        ------
+        ValueError
+            If the altitude is not in the troposphere, or nothing is left of the temperature.
+
+        References
+        ----------
+        ISO 2533:1975; dynamic viscosity by Sutherland's formula as it stands there.
+        """
+        if not 0.0 <= altitude <= _TROPOPAUSE:
+            raise ValueError(f"altitude must be within 0 ... {_TROPOPAUSE:g} m; it is {altitude:g}")
+        standard = _SEA_LEVEL_TEMPERATURE - _LAPSE_RATE * altitude
+        temperature = standard + temperature_offset
+        if not 0.0 < temperature < math.inf:
+            raise ValueError(f"temperature must be positive; it is {temperature:g} K")
+        exponent = _GRAVITY / (_LAPSE_RATE * _GAS_CONSTANT)
+        pressure = _SEA_LEVEL_PRESSURE * (standard / _SEA_LEVEL_TEMPERATURE) ** exponent
+        viscosity = _SUTHERLAND_FACTOR * temperature**1.5 / (temperature + _SUTHERLAND_TEMPERATURE)
+        return cls(
+            density=pressure / (_GAS_CONSTANT * temperature),
+            sound_speed=math.sqrt(_HEAT_RATIO * _GAS_CONSTANT * temperature),
+            dynamic_viscosity=viscosity,
+            temperature=temperature,
+            pressure=pressure,
+            relative_humidity=relative_humidity,
+        )
 
 
 def require_known_air(air: Air) -> None:

@@ -4,10 +4,14 @@ from __future__ import annotations
 
 import dataclasses
 
+from propmdao.records.wake_law import WakeGrid
+
 
 @dataclasses.dataclass(frozen=True)
 class Fidelity:
-    """Numbers of panels and harmonics; hashable, fixed at compile time.
+    """Numbers of panels, harmonics and wake nodes; hashable, fixed at compile time.
+
+    docs/verification.md, "Panels", shows what the defaults cost in accuracy.
 
     Attributes
     ----------
@@ -18,6 +22,8 @@ class Fidelity:
         (the thesis' Tess_W x Tess_U, 65 x 80).
     n_harmonics : int
         Harmonics of the blade passage frequency.
+    wake : WakeGrid
+        Nodes of the wake's filaments.
     """
 
     n_chordwise: int = 8
@@ -25,6 +31,7 @@ class Fidelity:
     n_contour: int = 65
     n_surface_span: int = 80
     n_harmonics: int = 10
+    wake: WakeGrid = WakeGrid()
 
     def __post_init__(self) -> None:
         """Refuse resolutions that no mesh can have."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
-from typing import TypeVar, dataclass_transform
+from typing import Any, TypeVar, dataclass_transform
 
 import jax
 
@@ -15,14 +15,15 @@ T = TypeVar("T")
 Scalar = jax.Array | float
 
 
-@dataclass_transform(frozen_default=True)
+@dataclass_transform(frozen_default=True, field_specifiers=(dataclasses.field,))
 def record(cls: type[T]) -> type[T]:
-    """Make a class a frozen dataclass whose every field is a JAX pytree leaf (or subtree).
+    """Make a class a frozen dataclass whose fields are JAX pytree leaves (or subtrees).
 
     Parameters
     ----------
     cls : type
-        Class with annotated fields, each an array, a scalar or another record.
+        Class with annotated fields, each an array, a scalar or another record. A field made by
+        ``static()`` is fixed at compile time instead: it must be hashable.
 
     Returns
     -------
@@ -32,3 +33,14 @@ def record(cls: type[T]) -> type[T]:
     """
     frozen = dataclasses.dataclass(frozen=True)(cls)
     return jax.tree_util.register_dataclass(frozen)
+
+
+def static() -> Any:
+    """Field of a record that is fixed at compile time.
+
+    Returns
+    -------
+    dataclasses.Field
+        For the right side of an annotated field.
+    """
+    return dataclasses.field(metadata={"static": True})

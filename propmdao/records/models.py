@@ -1,0 +1,121 @@
+"""How a propeller is modelled: its loads, its noise, and how finely both are resolved."""
+
+from __future__ import annotations
+
+import dataclasses
+from typing import Literal, get_args
+
+from propmdao.records.fidelity import Fidelity
+from propmdao.records.wake_law import WakeLaw
+
+#: How boundary layers are tripped, as NASA RP-1218 distinguishes them.
+Trip = Literal["none", "light", "heavy"]
+#: Planform of the blade's tip, as NASA RP-1218 distinguishes them.
+Tip = Literal["rounded", "square"]
+
+
+@dataclasses.dataclass(frozen=True)
+class Transition:
+    """Where boundary layers turn turbulent, in the polars of the sections.
+
+    Attributes
+    ----------
+    n_crit : float
+        Critical amplification exponent of the e^n method. The catalogue's polars have 5, what is
+        left of a quiet wind tunnel's 9 in a propeller's own turbulence; others are made by
+        NeuralFoil (extra ``polars``).
+
+    Raises
+    ------
+    ValueError
+        If it is not positive.
+    """
+
+    n_crit: float = 5.0
+
+    def __post_init__(self) -> None:
+        """Refuse exponents that no boundary layer has."""
+        if not 0.0 < self.n_crit < float("inf"):
+            raise ValueError(f"n_crit must be positive; it is {self.n_crit:g}")
+
+
+@dataclasses.dataclass(frozen=True)
+class LoadModel:
+    """How the loads are computed.
+
+    Attributes
+    ----------
+    viscous : bool
+        Whether the lattice is held to the polars of the sections; False is inviscid flow.
+    stall_delay : bool
+        Whether rotation delays the stall of the sections (Du and Selig).
+    wake : WakeLaw
+        How the prescribed wake moves.
+    transition : Transition
+        Where boundary layers turn turbulent.
+    """
+
+    viscous: bool = True
+    stall_delay: bool = True
+    wake: WakeLaw = dataclasses.field(default_factory=WakeLaw)
+    transition: Transition = Transition()
+
+
+@dataclasses.dataclass(frozen=True)
+class SelfNoiseModel:
+    """How broadband self-noise is computed.
+
+    Attributes
+    ----------
+    trip : {"none", "light", "heavy"}
+        How the boundary layers are tripped: of the noise, not of the loads.
+    tip : {"rounded", "square"}
+        Planform of the blade's tip.
+
+    Raises
+    ------
+    ValueError
+        If one of them is another word.
+    """
+
+    trip: Trip = "none"
+    tip: Tip = "rounded"
+
+    def __post_init__(self) -> None:
+        """Refuse words that the model does not know."""
+        for name, known in (("trip", get_args(Trip)), ("tip", get_args(Tip))):
+            value = getattr(self, name)
+            if value not in known:
+                raise ValueError(f"{name} must be one of {', '.join(known)}; it is {value!r}")
+
+
+@dataclasses.dataclass(frozen=True)
+class NoiseModel:
+    """Which noise is computed beside the tones.
+
+    Attributes
+    ----------
+    broadband : SelfNoiseModel or None
+        Broadband self-noise; None (default) leaves it out.
+    """
+
+    broadband: SelfNoiseModel | None = None
+
+
+@dataclasses.dataclass(frozen=True)
+class Model:
+    """How a propeller is modelled; hashable, fixed at compile time.
+
+    Attributes
+    ----------
+    loads : LoadModel
+        How the loads are computed.
+    noise : NoiseModel
+        Which noise is computed.
+    fidelity : Fidelity
+        How finely blade, wake and sound are resolved.
+    """
+
+    loads: LoadModel = dataclasses.field(default_factory=LoadModel)
+    noise: NoiseModel = NoiseModel()
+    fidelity: Fidelity = Fidelity()

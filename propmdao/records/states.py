@@ -1,0 +1,106 @@
+"""Operating points: as a user says them, and as the solvers take them."""
+
+from __future__ import annotations
+
+import dataclasses
+from typing import Any
+
+import numpy as np
+
+from propmdao.records.air import Air
+from propmdao.records.pytrees import Scalar, record
+from propmdao.records.units import RAD_PER_S
+
+
+@record
+class RotorState:
+    """A rotor that turns and flies through air: all that the solvers are told of its operation.
+
+    Attributes
+    ----------
+    rotation_speed : scalar
+        About +z [rad/s].
+    speed : scalar
+        Axial flight speed, 0 is hover [m/s].
+    air : Air
+        The undisturbed air.
+    """
+
+    rotation_speed: Scalar
+    speed: Scalar
+    air: Air
+
+    @property
+    def mach(self) -> Scalar:
+        """Mach number of the flight."""
+        return self.speed / self.air.sound_speed
+
+    def turning(self, rotation_speed: Scalar) -> RotorState:
+        """The same flight at another rotation speed [rad/s]."""
+        return dataclasses.replace(self, rotation_speed=rotation_speed)
+
+
+@dataclasses.dataclass(frozen=True)
+class OperatingPoint:
+    """What a propeller is asked: a rotation speed or a thrust, at a flight speed, in some air.
+
+    Attributes
+    ----------
+    rpm : float or None
+        Rotation speed [rev/min]; None where the thrust is given.
+    thrust : float or None
+        Thrust required of all blades [N]; None where the rotation speed is given.
+    speed : float
+        Axial flight speed, 0 is hover [m/s].
+    air : Air
+        The undisturbed air.
+
+    Raises
+    ------
+    ValueError
+        If not exactly one of rpm and thrust is given, or a value is out of range.
+    """
+
+    rpm: float | None = None
+    thrust: float | None = None
+    speed: float = 0.0
+    air: Air = dataclasses.field(default_factory=Air)
+
+    def __post_init__(self) -> None:
+        """Refuse points that no propeller can be at."""
+        if (self.rpm is None) == (self.thrust is None):
+            raise ValueError("give either rpm or thrust")
+        if self.rpm is not None and not 0.0 <= self.rpm < np.inf:
+            raise ValueError(f"rpm must be 0 or more; it is {self.rpm:g}")
+        if self.thrust is not None and not 0.0 < self.thrust < np.inf:
+            raise ValueError(f"thrust must be positive; it is {self.thrust:g} N")
+        if not 0.0 <= self.speed < np.inf:
+            raise ValueError(f"speed must be 0 m/s or more; it is {self.speed:g}")
+        for name, unit in (
+            ("density", "kg/m3"),
+            ("sound_speed", "m/s"),
+            ("dynamic_viscosity", "Pa s"),
+        ):
+            value = getattr(self.air, name)
+            if not 0.0 < value < np.inf:
+                raise ValueError(f"{name} must be positive; it is {value:g} {unit}")
+
+    def at(self, rotation_speed: Scalar) -> RotorState:
+        """State of the rotor at a rotation speed.
+
+        Parameters
+        ----------
+        rotation_speed : float
+            [rad/s].
+
+        Returns
+        -------
+        RotorState
+            For the solvers.
+        """
+        return RotorState(rotation_speed, float(self.speed), self.air)
+
+    @property
+    def rotation_speed(self) -> float | None:
+        """The rotation speed asked for [rad/s], None where a thrust is."""
+        return None if self.rpm is None else self.rpm * RAD_PER_S
