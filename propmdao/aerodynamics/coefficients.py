@@ -6,6 +6,7 @@ import jax.numpy as jnp
 from jax import Array
 
 from propmdao.records.pytrees import Scalar, record
+from propmdao.records.states import RotorState
 from propmdao.runtime.compilation import compiled
 
 
@@ -32,34 +33,31 @@ class Coefficients:
 
 @compiled
 def coefficients(
-    thrust: Scalar,
-    torque: Scalar,
-    rotation_speed: Scalar,
-    speed: Scalar,
-    density: Scalar,
-    diameter: Scalar,
+    thrust: Scalar, torque: Scalar, state: RotorState, diameter: Scalar
 ) -> Coefficients:
     """Coefficients of a propeller.
 
     Parameters
     ----------
     thrust, torque : float
-        Of all blades [N], [N m].
-    rotation_speed, speed, density, diameter : float
-        Rotation speed [rad/s], flight speed [m/s], air density [kg/m^3], diameter [m].
+        Thrust and torque of all blades [N], [N m].
+    state : RotorState
+        How the propeller turns and flies.
+    diameter : float
+        Diameter from tip to tip [m].
 
     Returns
     -------
     Coefficients
         J, CT, CQ, CP and eta.
     """
-    turning = rotation_speed > 0.0
-    n = jnp.where(turning, rotation_speed, 2.0 * jnp.pi) / (2.0 * jnp.pi)
-    on = jnp.where(turning, 1.0, 0.0)
-    force = density * n**2 * diameter**4
-    J = on * speed / (n * diameter)
-    CT = on * thrust / force
-    CQ = on * torque / (force * diameter)
+    turning = state.rotation_speed > 0.0
+    n = jnp.where(turning, state.rotation_speed, 2.0 * jnp.pi) / (2.0 * jnp.pi)
+    switch = jnp.where(turning, 1.0, 0.0)
+    force = state.air.density * n**2 * diameter**4
+    J = switch * state.speed / (n * diameter)
+    CT = switch * thrust / force
+    CQ = switch * torque / (force * diameter)
     CP = 2.0 * jnp.pi * CQ
     absorbs = CP != 0.0
     eta = jnp.where(absorbs, J * CT / jnp.where(absorbs, CP, 1.0), 0.0)

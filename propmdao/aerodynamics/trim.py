@@ -1,38 +1,25 @@
-"""Rotation speed at which the thrust is the one required."""
+"""Rotation speed at which the thrust is the one required, for any solver of the loads."""
 
 from __future__ import annotations
 
-import dataclasses
 from collections.abc import Callable
 from functools import partial
-from typing import Any
+from typing import Any, NamedTuple, Protocol
 
 import jax
 import jax.numpy as jnp
 import numpy as np
 from jax import Array
 
-from propmdao.aerodynamics.sections.laws import ViscousSections
-from propmdao.aerodynamics.solutions.axial import (
-    Flow,
-    flow_at,
-    induced_velocity,
-    loads_at,
-    solve_steady,
-    steady_solution,
-)
-from propmdao.aerodynamics.solutions.lattice_loads import LatticeLoads
-from propmdao.aerodynamics.solutions.result import SteadySolution
+from propmdao.aerodynamics.solutions.case import RotorCase
+from propmdao.aerodynamics.solutions.result import RotorLoads
 from propmdao.aerodynamics.solutions.roots import at_root, empty
-from propmdao.records.pytrees import Scalar
+from propmdao.records.pytrees import Scalar, record
+from propmdao.records.units import RAD_PER_S
 from propmdao.runtime.compilation import compiled
 
 _TOLERANCE = 1.0e-10
 _MAX_EVALUATIONS = 60
-_RPM = 30.0 / np.pi
-_Asked = tuple[Array, int, float, float, float, float, float, float, ViscousSections | None]
-_Params = tuple[Flow, Array, tuple[Array, Array]]  # with the thrust required and the bounds
-
 
 # Tip speeds between which a rotation speed is looked for where nobody bounds it [m/s]: that of the
 # rotation at least, a hundredth of the speed of sound, and that of the air at most, nine tenths.
@@ -43,176 +30,170 @@ class TrimError(ValueError):
     """No rotation speed between the bounds gives the required thrust."""
 
 
-def rotation_bounds(radius: float, speed: float) -> tuple[float, float]:
+class Solver(Protocol):
+    """What a trim needs of a solver of the loads; `solutions.axial` is such a module."""
+
+    def solve(self, case: RotorCase) -> RotorLoads:
+        """Return the loads at the rotation speed of the case."""
+
+    def flow_at(self, case: RotorCase) -> Any:
+        """Return what does not change with the rotation speed, a pytree of floats."""
+
+    def evaluate(
+        self, flow: Any, thrust_required: Scalar, rotation_speed: Scalar
+    ) -> tuple[Array, Any]:
+        """Return the thrust of a trial [N], right at the solution, and a pytree of floats."""
+
+    def solution(
+        self, flow: Any, thrust_required: Scalar, rotation_speed: Scalar, results: Any
+    ) -> RotorLoads:
+        """Return the loads from the second thing that `evaluate` returned."""
+
+
+@record
+class Bounds:
+    """Rotation speeds between which the one that gives a thrust is looked for.
+
+    Attributes
+    ----------
+    low, high : scalar
+        Lowest and highest [rad/s].
+    """
+
+    low: Scalar
+    high: Scalar
+
+
+@record
+class Trimmed:
+    """A rotor at the thrust required of it.
+
+    Attributes
+    ----------
+    rotation_speed : scalar
+        The root, exactly differentiable; it means nothing unless the thrust missing is positive at
+        the lower and negative at the upper bound [rad/s].
+    missing : (scalar, scalar)
+        Thrust required less the thrust at the lower and at the upper bound [N].
+    loads : RotorLoads
+        Loads at that rotation speed.
+    """
+
+    rotation_speed: Array
+    missing: tuple[Array, Array]
+    loads: RotorLoads
+
+
+def rotation_bounds(radius: Scalar, speed: Scalar) -> Bounds:
     """Rotation speeds between which a subsonic propeller is looked for.
 
     Parameters
     ----------
-    radius, speed : float
-        Tip radius [m], axial flight speed [m/s].
+    radius : float
+        Tip radius [m].
+    speed : float
+        Axial flight speed [m/s].
 
     Returns
     -------
-    low, high : float
-        Bounds [rad/s].
+    Bounds
+        Rotation speeds; the upper one is 0 where the flight alone is too fast, which
+        `require_bounds` refuses.
+    """
+    highest = jnp.sqrt(jnp.maximum(LARGEST_TIP_SPEED**2 - speed**2, 0.0))
+    return Bounds(LEAST_TIP_SPEED / radius, highest / radius)
+
+
+def require_bounds(bounds: Bounds, speed: Scalar) -> None:
+    """Refuse bounds that enclose nothing; call it outside ``jit``.
+
+    Parameters
+    ----------
+    bounds : Bounds
+        Given ones, or those of `rotation_bounds`.
+    speed : float
+        Axial flight speed [m/s].
 
     Raises
     ------
     TrimError
-        The flight speed alone is too high.
+        If the flight speed alone is too high, or the bounds are not positive and rising.
     """
     if not speed < LARGEST_TIP_SPEED:
-        raise TrimError(f"speed must be below {LARGEST_TIP_SPEED:g} m/s to trim; it is {speed:g}")
-    return LEAST_TIP_SPEED / radius, float(np.sqrt(LARGEST_TIP_SPEED**2 - speed**2)) / radius
+        raise TrimError(
+            f"speed must be below {LARGEST_TIP_SPEED:g} m/s to trim; it is {float(speed):g}"
+        )
+    if not 0.0 < bounds.low < bounds.high:
+        raise TrimError(
+            "rpm bounds must be positive and increasing; they are "
+            f"{float(bounds.low) / RAD_PER_S:g} and {float(bounds.high) / RAD_PER_S:g}"
+        )
 
 
-def rotation_speed_for_thrust(
-    nodes: Array,
-    n_blades: int,
-    radius: float,
-    speed: float,
-    density: float,
-    thrust_required: float,
-    bounds: tuple[float, float],
-    sections: ViscousSections | None = None,
-) -> Array:
-    """Solve for the rotation speed that gives the required thrust.
+def trim(
+    solver: Solver, case: RotorCase, thrust_required: float, bounds: Bounds
+) -> tuple[float, RotorLoads]:
+    """Solve for the rotation speed that gives the required thrust, and the loads there.
 
     Parameters
     ----------
-    nodes : (nc + 1, ns + 1, 3) array
-        Corner points of the lattice of blade 1 [m].
-    n_blades : int
-        Number of equally spaced blades.
-    radius, speed, density, thrust_required : float
-        Tip radius [m], axial flight speed [m/s], air density [kg/m^3], thrust of all blades [N].
-    bounds : (float, float)
-        Lowest and highest rotation speed [rad/s].
-    sections : ViscousSections, optional
-        Polars that the lattice is held to; without any the flow is inviscid.
+    solver : Solver
+        Module that solves for the loads, as `solutions.axial`.
+    case : RotorCase
+        What is solved; its own rotation speed does not matter.
+    thrust_required : float
+        Thrust of all blades [N].
+    bounds : Bounds
+        Where the rotation speed is looked for.
 
     Returns
     -------
-    float
-        Rotation speed, to 1e-8 relative [rad/s].
+    rotation_speed, loads : float, RotorLoads
+        Rotation speed, to 1e-8 relative [rad/s], and the loads there.
 
     Raises
     ------
     TrimError
         The thrust required lies outside what the bounds give; the message has both ends.
     """
-    asked = _asked(nodes, n_blades, radius, speed, density, thrust_required, bounds, sections)
-    omega, missing = solve_rotation_speed(*asked)
-    require_reached(omega, missing, *asked)
-    return omega
-
-
-def steady_for_thrust(
-    nodes: Array,
-    n_blades: int,
-    radius: float,
-    speed: float,
-    density: float,
-    thrust_required: float,
-    bounds: tuple[float, float],
-    sections: ViscousSections | None = None,
-) -> tuple[Array, SteadySolution]:
-    """Solve for the rotation speed that gives the required thrust, and the loads there.
-
-    The last trial of the trim is the solution, so nothing is solved twice.
-
-    Parameters
-    ----------
-    nodes, n_blades, radius, speed, density, thrust_required, bounds, sections
-        As for `rotation_speed_for_thrust`.
-
-    Returns
-    -------
-    rotation_speed, solution : float, SteadySolution
-        Rotation speed [rad/s] and loads.
-
-    Raises
-    ------
-    TrimError
-        As `rotation_speed_for_thrust`.
-    """
-    asked = _asked(nodes, n_blades, radius, speed, density, thrust_required, bounds, sections)
-    omega, missing, solution = solve_trimmed(*asked)
-    require_reached(omega, missing, *asked)
-    return omega, solution
-
-
-def _asked(
-    nodes: Array,
-    n_blades: int,
-    radius: float,
-    speed: float,
-    density: float,
-    thrust: float,
-    bounds: tuple[float, float],
-    sections: ViscousSections | None,
-) -> _Asked:
-    """Arguments of the compiled trims, of one type each so that they compile once."""
-    low, high = (float(bound) for bound in bounds)
-    if not 0.0 < low < high:
-        raise TrimError(
-            "rpm bounds must be positive and increasing; "
-            f"they are {low * _RPM:g} and {high * _RPM:g}"
-        )
-    operating = float(radius), float(speed), float(density), float(thrust)
-    return nodes, n_blades, *operating, low, high, sections
+    require_bounds(bounds, case.state.speed)
+    trimmed = solve_for_thrust(solver, case, float(thrust_required), bounds)
+    require_reached(trimmed, solver, case, thrust_required, bounds)
+    return float(trimmed.rotation_speed), trimmed.loads
 
 
 def require_reached(
-    rotation_speed: Scalar,
-    missing: tuple[Scalar, Scalar],
-    nodes: Array,
-    n_blades: int,
-    radius: Scalar,
-    speed: Scalar,
-    density: Scalar,
-    thrust_required: Scalar,
-    low: Scalar,
-    high: Scalar,
-    sections: ViscousSections | None = None,
+    trimmed: Trimmed, solver: Solver, case: RotorCase, thrust_required: Scalar, bounds: Bounds
 ) -> None:
     """Refuse a rotation speed that the bounds do not enclose; call it outside ``jit``.
 
     Parameters
     ----------
-    rotation_speed, missing : float, (float, float)
-        Of `solve_rotation_speed` or `solve_trimmed`.
-    nodes, n_blades, radius, speed, density, thrust_required, low, high, sections
-        As these took them.
+    trimmed : Trimmed
+        What `solve_for_thrust` returned.
+    solver, case, thrust_required, bounds
+        What `solve_for_thrust` was given.
 
     Raises
     ------
     TrimError
         The thrust required lies outside what the bounds give; the message has both ends.
     """
-    at_low, at_high = missing
-    if at_low >= 0.0 >= at_high and np.isfinite(rotation_speed):
+    at_low, at_high = trimmed.missing
+    if at_low >= 0.0 >= at_high and np.isfinite(trimmed.rotation_speed):
         return
-    at = [
-        float(solve_steady(nodes, n_blades, radius, end, speed, density, sections).thrust)
-        for end in (low, high)
+    ends = [
+        f"{float(solver.solve(case.turning(end)).thrust):.4g} N at {float(end) / RAD_PER_S:g} rpm"
+        for end in (bounds.low, bounds.high)
     ]
     raise TrimError(
-        f"thrust {thrust_required:g} N is out of reach at {speed:g} m/s: "
-        f"{at[0]:.4g} N at {low * _RPM:g} rpm, {at[1]:.4g} N at {high * _RPM:g} rpm"
+        f"thrust {float(thrust_required):g} N is out of reach at {float(case.state.speed):g} m/s: "
+        + ", ".join(ends)
     )
 
 
 def rotation_speed_by_interpolation(
-    nodes: Array,
-    n_blades: int,
-    radius: Scalar,
-    speed: Scalar,
-    density: Scalar,
-    thrust_required: Scalar,
-    low: Scalar,
-    high: Scalar,
-    sections: ViscousSections | None = None,
+    solver: Solver, case: RotorCase, thrust_required: Scalar, bounds: Bounds
 ) -> Array:
     """Rotation speed by the thesis' rule: thrust linear between the two bounds.
 
@@ -220,156 +201,150 @@ def rotation_speed_by_interpolation(
 
     Parameters
     ----------
-    nodes, n_blades, radius, speed, density, thrust_required, sections
-        As for `rotation_speed_for_thrust`.
-    low, high : float
-        The two rotation speeds at which the thrust is computed [rad/s].
+    solver : Solver
+        Module that solves for the loads.
+    case : RotorCase
+        What is solved; its own rotation speed does not matter.
+    thrust_required : float
+        Thrust of all blades [N].
+    bounds : Bounds
+        The two rotation speeds at which the thrust is computed.
 
     Returns
     -------
     float
         Rotation speed; beyond the two, an extrapolation [rad/s].
     """
+    low, high = bounds.low, bounds.high
     # Mapped, so that the lattice is compiled once for both.
     at_low, at_high = jax.lax.map(
-        lambda end: solve_steady(nodes, n_blades, radius, end, speed, density, sections).thrust,
-        jnp.stack([low, high]),
+        lambda end: solver.solve(case.turning(end)).thrust, jnp.stack([low, high])
     )
     return low + (high - low) * (thrust_required - at_low) / (at_high - at_low)
 
 
-@partial(compiled, static_argnames="n_blades")
-def solve_rotation_speed(
-    nodes: Array,
-    n_blades: int,
-    radius: Scalar,
-    speed: Scalar,
-    density: Scalar,
-    thrust_required: Scalar,
-    low: Scalar,
-    high: Scalar,
-    sections: ViscousSections | None = None,
-) -> tuple[Array, tuple[Array, Array]]:
-    """Rotation speed for a thrust, and how much thrust is missing at either bound.
-
-    The wake is transported by the induced velocity of the thrust required, which is that of
-    the solution, so that one lattice solution a trial is enough; at any other rotation speed the
-    thrust found this way errs, but never to the other side of the thrust required.
-
-    Parameters
-    ----------
-    nodes, n_blades, radius, speed, density, thrust_required, sections
-        As for `rotation_speed_for_thrust`.
-    low, high : float
-        Bounds [rad/s].
-
-    Returns
-    -------
-    rotation_speed, missing : float, (float, float)
-        The root, exactly differentiable, means nothing unless the thrust missing is positive
-        at `low` and negative at `high` [rad/s], [N].
-    """
-    omega, missing, _ = solve_trimmed(
-        nodes, n_blades, radius, speed, density, thrust_required, low, high, sections
-    )
-    return omega, missing
-
-
-@partial(compiled, static_argnames="n_blades")
-def solve_trimmed(
-    nodes: Array,
-    n_blades: int,
-    radius: Scalar,
-    speed: Scalar,
-    density: Scalar,
-    thrust_required: Scalar,
-    low: Scalar,
-    high: Scalar,
-    sections: ViscousSections | None = None,
-) -> tuple[Array, tuple[Array, Array], SteadySolution]:
+@partial(compiled, static_argnames="solver")
+def solve_for_thrust(
+    solver: Solver, case: RotorCase, thrust_required: Scalar, bounds: Bounds
+) -> Trimmed:
     """Rotation speed for a thrust, the thrust missing at either bound, and the loads.
 
+    The last trial of the search is the solution, so nothing is solved twice.
+
     Parameters
     ----------
-    nodes, n_blades, radius, speed, density, thrust_required, low, high, sections
-        As `solve_rotation_speed` takes them.
+    solver : Solver
+        Module that solves for the loads (static).
+    case : RotorCase
+        What is solved; its own rotation speed does not matter.
+    thrust_required : float
+        Thrust of all blades [N].
+    bounds : Bounds
+        Where the rotation speed is looked for.
 
     Returns
     -------
-    rotation_speed, missing, solution : float, (float, float), SteadySolution
-        As of `solve_rotation_speed`, and the loads at that rotation speed.
+    Trimmed
+        Exactly differentiable in every argument but the bounds.
     """
-    # The rotation speed in here is that of no trial yet.
-    flow = flow_at(nodes, n_blades, radius, low, speed, density, sections)
+    bounds = jax.tree.map(lambda bound: jnp.asarray(bound, float), bounds)
+    flow = solver.flow_at(case.turning(bounds.low))
 
-    def at_speed(params: _Params, omega: Array) -> tuple[Flow, Array]:
+    def evaluate(params: Any, rotation_speed: Array) -> tuple[Array, Any]:
         flow, required, _ = params
-        flow = dataclasses.replace(flow, rotation_speed=omega)
-        return flow, induced_velocity(flow, required)
+        return solver.evaluate(flow, required, rotation_speed)
 
-    def loads(params: _Params, omega: Array) -> LatticeLoads:
-        flow, w = at_speed(params, omega)
-        return loads_at(flow, n_blades, w)
+    def missing(params: Any, rotation_speed: Array, results: tuple[Array, Any]) -> Array:
+        return params[1] - results[0]
 
-    def missing(params: _Params, omega: Array, loads: LatticeLoads) -> Array:
-        return params[1] - n_blades * loads.thrust
+    def search(params: Any) -> tuple[Array, tuple[Array, Any], tuple[Array, Array]]:
+        _, required, bounds = params
 
-    def solve(params: _Params) -> tuple[Array, LatticeLoads, tuple[Array, Array]]:
-        _, required, (low, high) = params
+        def trial(rotation_speed: Array) -> tuple[Array, tuple[Array, Any]]:
+            results = evaluate(params, rotation_speed)
+            return missing(params, rotation_speed, results), results
 
-        def trial(omega: Array) -> tuple[Array, LatticeLoads]:
-            blade = loads(params, omega)
-            return missing(params, omega, blade), blade
+        return _bracketed_search(trial, required, bounds)
 
-        return _bracketed_search(trial, required, low, high)
+    params = flow, jnp.asarray(thrust_required, float), bounds
+    rotation_speed, (_, results), ends = at_root(search, evaluate, missing, params)
+    return Trimmed(rotation_speed, ends, solver.solution(flow, params[1], rotation_speed, results))
 
-    bounds = (jnp.asarray(low, float), jnp.asarray(high, float))
-    params = (flow, jnp.asarray(thrust_required, float), bounds)
-    omega, blade, at_bounds = at_root(solve, loads, missing, params)
-    flow, w = at_speed(params, omega)
-    return omega, at_bounds, steady_solution(flow, n_blades, w, blade)
+
+class _Search(NamedTuple):
+    """State of the bracketed search."""
+
+    n_trials: Array | int
+    low: Array
+    high: Array
+    trial: Array
+    last_trial: Array
+    last_missing: Array
+    missing_at_low: Array
+    missing_at_high: Array
+    results: Any
+    close: Array  # whether the next trial will do
+    done: Array
 
 
 def _bracketed_search(
-    missing: Callable[[Array], tuple[Array, LatticeLoads]],
-    thrust: Scalar,
-    low: Scalar,
-    high: Scalar,
-) -> tuple[Array, LatticeLoads, tuple[Array, Array]]:
-    """Root of the missing thrust, the loads there and the thrust missing at either bound.
+    missing: Callable[[Array], tuple[Array, Any]], thrust: Scalar, bounds: Bounds
+) -> tuple[Array, Any, tuple[Array, Array]]:
+    """Root of the missing thrust, the results there and the thrust missing at either bound.
 
     Both bounds are evaluated first. Then CT, taken as a straight line in J through the last
     two trials, gives the next (it nearly is one); where that leaves the bracket, bisect. Three to
     six trials.
     """
 
-    def unfinished(state: Any) -> Array:
-        count, *_, (at_low, at_high), _, _, done = state
-        bracketed = (count < 2) | ((at_low >= 0.0) & (at_high <= 0.0))
-        return (count < _MAX_EVALUATIONS) & bracketed & ~done
+    def unfinished(state: _Search) -> Array:
+        encloses = (state.missing_at_low >= 0.0) & (state.missing_at_high <= 0.0)
+        return (state.n_trials < _MAX_EVALUATIONS) & ((state.n_trials < 2) | encloses) & ~state.done
 
-    def step(state: Any) -> Any:
-        count, lo, hi, x, (x1, f1), (at_low, at_high), _, last, _ = state
-        f, loads = missing(x)
-        at_low = jnp.where(count == 0, f, at_low)
-        at_high = jnp.where(count == 1, f, at_high)
-        lo, hi = jnp.where(f >= 0.0, x, lo), jnp.where(f < 0.0, x, hi)
-        trial = _where_linear_ct_gives(thrust, x, thrust - f, x1, thrust - f1)
-        inside = (trial > lo) & (trial < hi)
-        following = jnp.where(inside | (f == 0.0), trial, 0.5 * (lo + hi))
-        following = jnp.where(count == 0, high, following)
+    def step(state: _Search) -> _Search:
+        x, last_x = state.trial, state.last_trial
+        f, results = missing(x)
+        low = jnp.where(f >= 0.0, x, state.low)
+        high = jnp.where(f < 0.0, x, state.high)
+        trial = _where_linear_ct_gives(thrust, x, thrust - f, last_x, thrust - state.last_missing)
+        inside = (trial > low) & (trial < high)
+        following = jnp.where(inside | (f == 0.0), trial, 0.5 * (low + high))
+        following = jnp.where(state.n_trials == 0, bounds.high, following)
         # A secant step leaves an error of about the product of the last two. Where the next trial
-        # will do, it is evaluated once more, for the loads there.
-        product = jnp.abs((following - x) * (x - x1))
-        close = (count > 1) & (product <= _TOLERANCE * following**2)
-        following = jnp.where(last, x, following)
-        return count + 1, lo, hi, following, (x, f), (at_low, at_high), loads, close, last
+        # will do, it is evaluated once more, for the results there.
+        product = jnp.abs((following - x) * (x - last_x))
+        close = (state.n_trials > 1) & (product <= _TOLERANCE * following**2)
+        return _Search(
+            n_trials=state.n_trials + 1,
+            low=low,
+            high=high,
+            trial=jnp.where(state.close, x, following),
+            last_trial=x,
+            last_missing=f,
+            missing_at_low=jnp.where(state.n_trials == 0, f, state.missing_at_low),
+            missing_at_high=jnp.where(state.n_trials == 1, f, state.missing_at_high),
+            results=results,
+            close=close,
+            done=state.close,
+        )
 
+    low, high = jnp.asarray(bounds.low), jnp.asarray(bounds.high)
     zero, no = jnp.zeros_like(low), jnp.asarray(False)
-    blank = empty(missing, low)[1]
-    start: Any = (0, low, high, low, (zero, zero), (zero, zero), blank, no, no)
-    _, _, _, omega, _, ends, loads, _, _ = jax.lax.while_loop(unfinished, step, start)
-    return omega, loads, ends
+    start = _Search(
+        n_trials=0,
+        low=low,
+        high=high,
+        trial=low,
+        last_trial=zero,
+        last_missing=zero,
+        missing_at_low=zero,
+        missing_at_high=zero,
+        results=empty(missing, low)[1],
+        close=no,
+        done=no,
+    )
+    end = jax.lax.while_loop(unfinished, step, start)
+    return end.trial, end.results, (end.missing_at_low, end.missing_at_high)
 
 
 def _where_linear_ct_gives(thrust: Scalar, x1: Array, t1: Array, x2: Array, t2: Array) -> Array:

@@ -15,11 +15,9 @@ from propmdao.acoustics.levels.perceived_noise import PERCEIVED_BANDS_HZ
 from propmdao.acoustics.levels.time_levels import sound_exposure_level_db
 from propmdao.acoustics.levels.weighting import level_dba
 from propmdao.analysis.self_noise import BANDS_HZ
-from propmdao.records.air import Air, require_known_air
 
 #: Of the levels [s], as in certification.
 STEP = 0.5
-PARTS = ("thickness", "loading", "broadband", "total")
 
 Floats = npt.NDArray[np.float64]
 
@@ -39,8 +37,8 @@ class Flight:
     duration : float or None
         How long it is heard [s]; by default until it is six times as far away as at its nearest,
         20 s at least.
-    air : Air or None
-        That absorbs sound, if any does.
+    absorption : bool
+        Whether the air absorbs sound.
 
     Raises
     ------
@@ -52,7 +50,7 @@ class Flight:
     sideline: float = 0.0
     microphone_height: float = 0.0
     duration: float | None = None
-    air: Air | None = dataclasses.field(default_factory=Air)
+    absorption: bool = True
 
     def __post_init__(self) -> None:
         """Refuse what cannot be."""
@@ -67,8 +65,6 @@ class Flight:
             )
         if self.duration is not None and not 4 * STEP <= self.duration < np.inf:
             raise ValueError(f"duration must be {4 * STEP:g} s or more; it is {self.duration:g}")
-        if self.air is not None:
-            require_known_air(self.air)
 
     @property
     def miss_distance(self) -> float:
@@ -85,7 +81,8 @@ class Flyover:
     time : (n_steps,) array
         Middle of steps of `STEP`; the propeller is overhead at 0 [s].
     mean_square : dict of str to (n_steps, n_bands) array
-        In the bands `propmdao.analysis.self_noise.BANDS_HZ`, by `PARTS` [Pa^2].
+        Mean squares in the bands `propmdao.analysis.self_noise.BANDS_HZ`, of each source of tones,
+        of "broadband" and of the "total" [Pa^2].
     sight : Sight
         From where it is heard, each array (1, n_steps).
     pressure : (n_times,) array or None
@@ -103,7 +100,7 @@ class Flyover:
         Parameters
         ----------
         part : str
-            Of `PARTS`.
+            Key of `mean_square`.
 
         Returns
         -------
@@ -122,7 +119,7 @@ class Flyover:
             [EPNdB], [PNdB], None where there is none for the reason epnl_failure; history: time,
             distance, elevation_deg, doppler and levels of each step.
         """
-        levels = {part: self.level_dba(part) for part in PARTS}
+        levels = {part: self.level_dba(part) for part in self.mean_square}
         perceived: dict[str, Any] = {"epnl": None, "pnltm": None, "epnl_failure": None}
         bands = np.asarray(level_db(self.mean_square["total"]))[:, : PERCEIVED_BANDS_HZ.size]
         try:

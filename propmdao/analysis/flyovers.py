@@ -2,14 +2,11 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 import numpy.typing as npt
 
-from propmdao.acoustics.broadband.boundary_layer import Trip
 from propmdao.acoustics.broadband.rotor import StripFlow, rotor_self_noise
-from propmdao.acoustics.kinematics.motion import poses
+from propmdao.acoustics.kinematics.motion import Motion, poses
 from propmdao.acoustics.kinematics.tracks import fixed_observers, flyover_track, line_of_sight
 from propmdao.acoustics.levels.time_levels import third_octave_history
 from propmdao.acoustics.propagation.absorption import absorb
@@ -20,17 +17,15 @@ from propmdao.acoustics.sounds.recordings import SAMPLE_RATE
 from propmdao.acoustics.sources.flyover import flyover_histories
 from propmdao.acoustics.sources.rotors import Rotor, equally_spaced
 from propmdao.aerodynamics.lattice.strips import strip_radii
-from propmdao.aerodynamics.sections.laws import AIR_VISCOSITY
-from propmdao.analysis.flyover_results import PARTS, STEP, Flight, Flyover
+from propmdao.analysis.flyover_results import STEP, Flight, Flyover
 from propmdao.analysis.results import Analysis
 from propmdao.analysis.self_noise import BANDS_HZ, strip_flow
-from propmdao.analysis.single_point import SOUND_SPEED
 from propmdao.geometry.blade import Blade, span_interpolation
 from propmdao.geometry.meshes import propeller_surface
 from propmdao.geometry.surface import surface_panels
 from propmdao.propeller.description import Propeller
-from propmdao.records.fidelity import Fidelity
-from propmdao.records.units import RAD_PER_S
+from propmdao.records.air import require_known_air
+from propmdao.records.models import SelfNoiseModel
 
 _MAX_SAMPLES = 30_000_000
 _MAX_DURATION = 1200.0  # s
@@ -38,31 +33,19 @@ _MAX_DURATION = 1200.0  # s
 Floats = npt.NDArray[np.float64]
 
 
-def fly_over(
-    propeller: Propeller,
-    analysis: Analysis,
-    flight: Flight,
-    *,
-    trip: Trip = "none",
-    sound: bool = False,
-    fidelity: Fidelity = Fidelity(),  # noqa: B008 - frozen
-) -> Flyover:
+def fly_over(analysis: Analysis, flight: Flight, *, sound: bool = False) -> Flyover:
     """Hear an analysed propeller fly over.
 
     Parameters
     ----------
-    propeller : Propeller
-        The described blade, as it was analysed.
     analysis : Analysis
-        Its loads, at the speed of the flight.
+        Its loads, at the speed of the flight. Boundary layers are tripped in the broadband noise,
+        which is always part of a flyover, as the analysis' noise model says; untripped where it has
+        none.
     flight : Flight
         Where it flies, where the microphone is.
-    trip : {"none", "light", "heavy"}
-        How the boundary layers are tripped in the broadband noise.
     sound : bool
         Whether the pressure record is wanted.
-    fidelity : Fidelity
-        Of the analysis.
 
     Returns
     -------
@@ -76,133 +59,132 @@ def fly_over(
 
     Notes
     -----
-    Of the ways by the ground and straight, the first is as long as the second to absorption.
+    Absorption uses the direct path's length for the reflected path as well.
     """
-    if not analysis.speed > 0.0:
-        raise ValueError(f"speed of a flyover must be positive [m/s]; it is {analysis.speed:g}")
+    state, fidelity = analysis.state, analysis.model.fidelity
+    air, sound_speed = state.air, state.air.sound_speed
+    speed = float(state.speed)
+    if flight.absorption:
+        require_known_air(air)
+    if not speed > 0.0:
+        raise ValueError(f"speed of a flyover must be positive [m/s]; it is {speed:g}")
     if not analysis.rpm > 0.0:
         raise ValueError(f"rpm of a flyover must be positive; it is {analysis.rpm:g}")
-    passage = propeller.n_blades * analysis.rpm / 60.0
-    # As it is heard from ahead.
-    highest = fidelity.n_harmonics * passage / (1.0 - analysis.speed / SOUND_SPEED)
+    propeller = analysis.changed_propeller
+    emitted = fidelity.n_harmonics * propeller.n_blades * analysis.rpm / 60.0
+    highest = emitted / (1.0 - speed / sound_speed)  # heard from ahead
     rate = SAMPLE_RATE if sound else max(2000, 2 * round(2.0 * highest))
     each = 2 * round(0.5 * STEP * rate)
-    duration = flight.duration or max(20.0, 12.0 * flight.miss_distance / analysis.speed)
+    duration = flight.duration or max(20.0, 12.0 * flight.miss_distance / speed)
     n_steps = int(np.ceil(duration / STEP - 1e-9))
     longest = min(_MAX_DURATION, _MAX_SAMPLES / rate)
     if duration > longest:
         raise ValueError(
             f"a flyover of {duration:.0f} s is too long: at most {longest:.0f} s; give a duration"
         )
-    start = flight.miss_distance / SOUND_SPEED - 0.5 * n_steps * STEP
+    start = flight.miss_distance / sound_speed - 0.5 * n_steps * STEP
     places = [[0.0, flight.sideline, flight.microphone_height]]
     if flight.microphone_height > 0.0:
         places.append([0.0, flight.sideline, -flight.microphone_height])
-    track = flyover_track(flight.height, analysis.speed)
+    track = flyover_track(flight.height, speed)
     clock = start + np.arange(n_steps * each) / rate
-    tones = _tones(propeller, analysis, fidelity, places, clock, track, highest)
+    tones = _tones(analysis, propeller, places, clock, track)
     held = BANDS_HZ[BANDS_HZ * 10**0.06 < 0.5 * rate]
+    records = {**tones.parts, "total": tones.total}
     parts = {}
-    for part in ("thickness", "loading", "total"):
-        time, heard = third_octave_history(getattr(tones, part)[0], rate, held, STEP)
-        parts[part] = np.pad(heard, ((0, 0), (0, BANDS_HZ.size - held.size)))
+    for part, record in records.items():
+        time, power = third_octave_history(record[0], rate, held, STEP)
+        parts[part] = np.pad(power, ((0, 0), (0, BANDS_HZ.size - held.size)))
     time = time + start
 
-    sights = [line_of_sight(track, fixed_observers([x]), time, SOUND_SPEED) for x in places]
-    flow = _flow(propeller, analysis, fidelity)
+    sights = [line_of_sight(track, fixed_observers([x]), time, sound_speed) for x in places]
+    flow = _flow(analysis, propeller)
     noises = [
-        _broadband(propeller, analysis, flow, x, np.asarray(sight.doppler)[0], time, track, trip)
-        for x, sight in zip(places, sights, strict=True)
+        _broadband(analysis, flow, np.asarray(place), np.asarray(sight.doppler)[0], time, track)
+        for place, sight in zip(places, sights, strict=True)
     ]
     if len(noises) == 1:
         parts["broadband"] = 4.0 * noises[0]  # on the ground itself pressure is doubled
     else:
-        delay = (sights[1].distance - sights[0].distance)[0] / SOUND_SPEED
+        delay = (sights[1].distance - sights[0].distance)[0] / sound_speed
         parts["broadband"] = np.asarray(
             bands_with_reflection(noises[0], noises[1], BANDS_HZ, delay)
         )
-    parts["total"] = parts["total"] + parts["broadband"]
+    parts["total"] = parts.pop("total") + parts["broadband"]
     distance = np.asarray(sights[0].distance)[0]
-    if flight.air is not None:
+    if flight.absorption:
         for part, power in parts.items():
-            parts[part] = np.asarray(absorb(power, BANDS_HZ, distance, flight.air))
+            parts[part] = np.asarray(absorb(power, BANDS_HZ, distance, air))
     pressure = None
     if sound:
         pressure = tones.total[0]
-        if flight.air is not None:
-            pressure = absorbed_record(pressure, distance, flight.air, each, rate)
+        if flight.absorption:
+            pressure = absorbed_record(pressure, distance, air, each, rate)
         pressure = pressure + changing_noise(BANDS_HZ, parts["broadband"], each, rate)
-    return Flyover(time, {part: parts[part] for part in PARTS}, sights[0], pressure)
+    return Flyover(time, parts, sights[0], pressure)
 
 
 def _tones(
-    propeller: Propeller,
     analysis: Analysis,
-    fidelity: Fidelity,
+    propeller: Propeller,
     places: list[list[float]],
     clock: Floats,
-    track: Any,
-    highest: float,
+    track: Motion,
 ) -> PressureHistory:
     """Record of the tones at the microphone, over ground, (1, n_times)."""
+    fidelity = analysis.model.fidelity
     surface = propeller_surface(propeller, fidelity.n_contour, fidelity.n_surface_span)
     rotor = Rotor(
         equally_spaced(propeller.n_blades),
-        analysis.rpm * RAD_PER_S,
+        float(analysis.state.rotation_speed),
         surface_panels(surface),
-        analysis.steady.point_loads,
+        analysis.loads.point_loads,
     )
-    emitted = highest * (1.0 - analysis.speed / SOUND_SPEED)
-    heard = flyover_histories(
-        [rotor], fixed_observers(places), clock, analysis.density, SOUND_SPEED, track, emitted
+    highest = fidelity.n_harmonics * propeller.n_blades * analysis.rpm / 60.0
+    histories = flyover_histories(
+        [rotor], fixed_observers(places), clock, analysis.point.air, track, highest
     )
+    # Two ways are added; flush with the ground both are one.
     factor = 2.0 / len(places)
-    return PressureHistory(
-        heard.time,
-        factor * heard.thickness.sum(axis=0, keepdims=True),
-        factor * heard.loading.sum(axis=0, keepdims=True),
-    )
+    return histories.each(lambda pressure: factor * pressure.sum(axis=0, keepdims=True))
 
 
-def _flow(propeller: Propeller, analysis: Analysis, fidelity: Fidelity) -> StripFlow:
-    states, stations = analysis.steady.sections, propeller.r_over_R
-    radii = span_interpolation(stations, strip_radii(stations[0], fidelity.n_spanwise))
+def _flow(analysis: Analysis, propeller: Propeller) -> StripFlow:
+    """Strips of the blade as broadband noise sees them."""
+    states, stations = analysis.loads.sections, propeller.r_over_R
+    n_spanwise = analysis.model.fidelity.n_spanwise
     return strip_flow(
-        analysis.steady.strips,
+        analysis.loads.strips,
         states.relative_speed,
         states.lift_coefficient,
         Blade.from_propeller(propeller),
-        radii,
+        span_interpolation(stations, strip_radii(stations[0], n_spanwise)),
     )
 
 
 def _broadband(
-    propeller: Propeller,
     analysis: Analysis,
     flow: StripFlow,
-    place: list[float],
+    place: Floats,
     doppler: Floats,
     times: Floats,
-    track: Any,
-    trip: Trip,
+    track: Motion,
 ) -> Floats:
     """Third octaves without ground or absorption, (n_times, n_bands) [Pa^2]."""
     # Whoever flies along is for a moment where the microphone is: pressure is the same for both,
     # frequencies are those of flying along times Doppler's factor.
     pose = poses(track, times)
     beside = np.einsum("tij,ti->tj", np.asarray(pose.rotation), place - np.asarray(pose.origin))
-    heard = [
+    n_blades, model = int(analysis.changed_propeller.n_blades), analysis.model.noise.broadband
+    powers = [
         rotor_self_noise(
             flow,
-            propeller.n_blades,
-            analysis.rpm * RAD_PER_S,
-            analysis.speed,
-            SOUND_SPEED,
-            AIR_VISCOSITY / analysis.density,
-            at[None],
+            n_blades,
+            analysis.state,
+            position[None],
             BANDS_HZ / factor,
-            trip=trip,
+            model=model or SelfNoiseModel(),
         ).total[0]
-        for at, factor in zip(beside, doppler, strict=True)
+        for position, factor in zip(beside, doppler, strict=True)
     ]
-    return np.array(heard)
+    return np.array(powers)

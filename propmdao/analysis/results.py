@@ -1,4 +1,4 @@
-"""What an analysis found, and its levels as plain numbers."""
+"""What an analysis found, with all that was asked, and its levels as plain numbers."""
 
 from __future__ import annotations
 
@@ -10,16 +10,22 @@ import numpy as np
 import numpy.typing as npt
 from jax import Array
 
-from propmdao.acoustics.broadband.boundary_layer import Trip
 from propmdao.acoustics.broadband.self_noise import SelfNoise, third_octave_centers
+from propmdao.acoustics.kinematics.observers import directions
 from propmdao.acoustics.levels.bands import third_octave, tones_in_bands
 from propmdao.acoustics.levels.decibels import level_db, mean_square, oaspl_db, spl_db
 from propmdao.acoustics.levels.weighting import level_dba, oaspl_dba
 from propmdao.acoustics.signals import Tones
 from propmdao.aerodynamics.coefficients import Coefficients
-from propmdao.aerodynamics.solutions.result import SteadySolution, failure
+from propmdao.aerodynamics.solutions.result import RotorLoads, failure
+from propmdao.analysis.request import Request
 from propmdao.analysis.self_noise import BANDS_HZ
-from propmdao.records.listening import Surroundings
+from propmdao.propeller.changes import Change
+from propmdao.propeller.description import Propeller
+from propmdao.propeller.identity import checksum
+from propmdao.records.listening import Listening
+from propmdao.records.models import Model
+from propmdao.records.states import OperatingPoint, RotorState
 from propmdao.records.units import RAD_PER_S
 from propmdao.runtime.compilation import compiled
 
@@ -27,44 +33,68 @@ from propmdao.runtime.compilation import compiled
 MECHANISMS = tuple(field.name for field in dataclasses.fields(SelfNoise))
 
 
-@dataclasses.dataclass(frozen=True)
+@dataclasses.dataclass(frozen=True, kw_only=True)
 class Analysis:
-    """Loads and tones of a propeller at one operating point.
+    """Loads and noise of a propeller at one operating point.
 
     Attributes
     ----------
-    rpm, speed, density : float
-        Rotation speed [rev/min], axial flight speed [m/s], air density [kg/m^3].
-    viscous : bool
-        Whether the lattice was held to section polars.
-    steady : SteadySolution
+    propeller : Propeller
+        The described blade, before the change.
+    request : Request
+        All that was asked; `point`, `change`, `model` and `listening` are its records.
+    rpm : float
+        Rotation speed [rev/min], asked for or found.
+    loads : RotorLoads
         Loads of the vortex lattice.
     coefficients : Coefficients
         J, CT, CQ, CP, eta.
-    observers : (n_observers, 3) array
-        Radius [m], elevation and azimuth [deg] of the observers; `observers.point` gives their
-        positions.
     tones : Tones
-        Their complex pressure amplitudes.
+        Complex pressure amplitudes at the observers.
     broadband : SelfNoise or None
         Mean squares in the third octaves `propmdao.analysis.self_noise.BANDS_HZ`, where asked for.
-    trip : str
-        How the boundary layers are tripped in the broadband noise.
-    surroundings : Surroundings
-        Ground and air on the way to the observers.
+    polars : dict of str to str
+        Where the polars of each airfoil come from; empty for inviscid flow.
     """
 
+    propeller: Propeller
+    request: Request
     rpm: float
-    speed: float
-    density: float
-    viscous: bool
-    steady: SteadySolution
+    loads: RotorLoads
     coefficients: Coefficients
-    observers: npt.NDArray[np.float64]
     tones: Tones
     broadband: SelfNoise | None
-    trip: Trip
-    surroundings: Surroundings
+    polars: dict[str, str] = dataclasses.field(default_factory=dict)
+
+    @property
+    def point(self) -> OperatingPoint:
+        """Operating point that was asked for."""
+        return self.request.point
+
+    @property
+    def change(self) -> Change:
+        """Change of the described propeller."""
+        return self.request.change
+
+    @property
+    def model(self) -> Model:
+        """How loads and noise were computed."""
+        return self.request.model
+
+    @property
+    def listening(self) -> Listening:
+        """Who listens, and what is around."""
+        return self.request.listening
+
+    @property
+    def state(self) -> RotorState:
+        """How the rotor turns and flies."""
+        return self.point.at(self.rpm * RAD_PER_S)
+
+    @property
+    def changed_propeller(self) -> Propeller:
+        """The blade that was analysed: the described one with its change."""
+        return self.change.applied_to(self.propeller)
 
     def to_dict(self) -> dict[str, Any]:
         """Results as plain numbers, with the keys of ``propmdao analyze --json``.
@@ -72,38 +102,49 @@ class Analysis:
         Returns
         -------
         dict
-            rpm, speed, rho, J, thrust, torque, shaft_power, CT, CQ, CP, eta, viscous, converged,
-            failure (None, or why it did not converge), trip (None without broadband noise),
-            surroundings and a list of observers with their levels.
+            What was asked: propeller (name, diameter, n_blades, checksum of the description,
+            source), change, point, model, listening, and where the polars come from; then rpm,
+            speed, rho, J, thrust, torque, shaft_power, CT, CQ, CP, eta, converged, failure (None,
+            or why it did not converge) and a list of observers with their levels.
         """
         levels = jax.tree.map(np.asarray, _levels(self.tones))
+        places = directions(self.listening.observers)
+        propeller = {key: getattr(self.propeller, key) for key in ("name", "diameter", "n_blades")}
+        propeller |= {"checksum": checksum(self.propeller), "source": self.propeller.source}
         return {
+            "propeller": propeller,
+            **self.request.to_dict(),
+            "polars": self.polars,
             "rpm": self.rpm,
-            "speed": self.speed,
-            "rho": self.density,
+            "speed": float(self.point.speed),
+            "rho": float(self.point.air.density),
             "J": float(self.coefficients.J),
-            "thrust": float(self.steady.thrust),
-            "torque": float(self.steady.torque),
-            "shaft_power": float(self.steady.torque) * self.rpm * RAD_PER_S,
+            "thrust": float(self.loads.thrust),
+            "torque": float(self.loads.torque),
+            "shaft_power": float(self.loads.torque) * self.rpm * RAD_PER_S,
             "CT": float(self.coefficients.CT),
             "CQ": float(self.coefficients.CQ),
             "CP": float(self.coefficients.CP),
             "eta": float(self.coefficients.eta),
-            "viscous": self.viscous,
-            "converged": bool(self.steady.converged),
-            "failure": failure(self.steady),
-            "trip": self.trip if self.broadband is not None else None,
-            "surroundings": dataclasses.asdict(self.surroundings),
-            "observers": [self._observer(i, levels) for i in range(len(self.observers))],
+            "converged": bool(self.loads.converged),
+            "failure": failure(self.loads),
+            "observers": [
+                # Rounding leaves 1e-15 deg where zero is meant.
+                {
+                    "elevation_deg": round(float(places.elevation_deg[i]), 9) + 0.0,
+                    "azimuth_deg": round(float(places.azimuth_deg[i]), 9) + 0.0,
+                    "radius": round(float(places.radius[i]), 9),
+                    **self._heard(i, levels),
+                }
+                for i in range(len(self.listening.observers))
+            ],
         }
 
-    def _observer(self, i: int, levels: dict[str, np.ndarray]) -> dict[str, Any]:
+    def _heard(self, i: int, levels: dict[str, np.ndarray]) -> dict[str, Any]:
+        """Levels at an observer."""
         frequency = np.asarray(self.tones.frequency_hz)
         spectra = [name for name in levels if name.startswith("spl")]
         result = {
-            "elevation_deg": float(self.observers[i, 1]),
-            "azimuth_deg": float(self.observers[i, 2]),
-            "radius": float(self.observers[i, 0]),
             "spl_bpf_db": float(levels["spl_db"][i, 0]),
             **{name: float(levels[name][i]) for name in levels if name not in spectra},
             "harmonics": [
@@ -112,28 +153,27 @@ class Analysis:
                 for m, f in enumerate(frequency)
             ],
         }
-        if self.broadband is not None:
-            noise = {name: np.asarray(getattr(self.broadband, name))[i] for name in MECHANISMS} | {
-                "spl": np.asarray(self.broadband.total)[i]
-            }
-            center, band = _with_noise(self.tones, i, noise["spl"])
-            result |= _total(self.tones, i, noise["spl"])
+        if self.broadband is None:
+            center, bands = third_octave(frequency, self.tones.total[i])
+        else:
+            noise = {name: np.asarray(getattr(self.broadband, name))[i] for name in MECHANISMS}
+            noise["spl"] = np.asarray(self.broadband.total)[i]
+            center, bands = _bands_with_noise(self.tones, i, noise["spl"])
+            result |= _levels_with_noise(self.tones, i, noise["spl"])
             in_bands = {name: np.asarray(level_db(power)) for name, power in noise.items()}
             result["broadband"] = [
                 {"frequency_hz": float(f)}
                 | {f"{name}_db": float(level[k]) for name, level in in_bands.items()}
                 for k, f in enumerate(BANDS_HZ)
             ]
-        else:
-            center, band = third_octave(frequency, self.tones.total[i])
         result["third_octave"] = [
             {"frequency_hz": float(f), "spl_db": float(level)}
-            for f, level in zip(center, band, strict=True)
+            for f, level in zip(center, bands, strict=True)
         ]
         return result
 
 
-def _with_noise(
+def _bands_with_noise(
     tones: Tones, i: int, noise: npt.NDArray[np.float64]
 ) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float64]]:
     """Levels in all bands of tones or noise, and those between."""
@@ -146,21 +186,22 @@ def _with_noise(
     return center, np.asarray(level_db(power))
 
 
-def _total(tones: Tones, i: int, noise: npt.NDArray[np.float64]) -> dict[str, float]:
-    """Overall levels of tones and broadband noise together, and of the noise alone."""
+def _levels_with_noise(tones: Tones, i: int, noise: npt.NDArray[np.float64]) -> dict[str, float]:
+    """Overall levels of the noise, and of tones and noise together."""
     power = np.concatenate([np.asarray(mean_square(tones.total[i])), noise])
     frequency = np.concatenate([np.asarray(tones.frequency_hz), BANDS_HZ])
     return {
-        "oaspl_db": float(level_db(power.sum())),
-        "oaspl_dba": float(level_dba(frequency, power)),
         "oaspl_broadband_db": float(level_db(noise.sum())),
+        "oaspl_broadband_dba": float(level_dba(BANDS_HZ, noise)),
+        "oaspl_total_db": float(level_db(power.sum())),
+        "oaspl_total_dba": float(level_dba(frequency, power)),
     }
 
 
 @compiled
 def _levels(tones: Tones) -> dict[str, Array]:
     """Levels of the tones by their key: of all observers, and harmonics where it begins by spl."""
-    parts = {"": tones.total, "thickness_": tones.thickness, "loading_": tones.loading}
+    parts = {"": tones.total} | {f"{name}_": part for name, part in tones.parts.items()}
     levels = {f"oaspl_{part}db": oaspl_db(pressure) for part, pressure in parts.items()}
     levels |= {f"spl_{part}db": spl_db(pressure) for part, pressure in parts.items()}
     return levels | {"oaspl_dba": oaspl_dba(tones.frequency_hz, tones.total)}

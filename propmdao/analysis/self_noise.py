@@ -70,42 +70,28 @@ def strip_flow(
 def self_noise(
     flow: StripFlow,
     n_blades: int,
-    rotation_speed: Scalar,
-    speed: Scalar,
-    density: Scalar,
-    sound_speed: Scalar,
+    state: RotorState,
     observers: ArrayLike,
-    trip: Trip = "none",
+    model: SelfNoiseModel = SelfNoiseModel(),  # noqa: B008 - frozen
 ) -> SelfNoise:
     """Self-noise in the bands `BANDS_HZ`.
 
     Parameters
     ----------
     flow : StripFlow
-        Of `strip_flow`.
+        Strips of blade 1, of `strip_flow`.
     n_blades : int
         Number of equally spaced blades.
-    rotation_speed, speed, density, sound_speed : float
-        Rotation speed [rad/s], axial flight speed [m/s], air density [kg/m^3], speed of
-        sound [m/s].
+    state : RotorState
+        How the rotor turns and flies.
     observers : (n_observers, 3) array
-        From the rotor centre, flying along [m].
-    trip : {"none", "light", "heavy"}
-        How the boundary layers are tripped.
+        Positions from the rotor centre, flying along [m].
+    model : SelfNoiseModel
+        Tripping of the boundary layers, planform of the tip.
 
     Returns
     -------
     SelfNoise
         Mean squares of each mechanism, (n_observers, n_bands) [Pa^2].
     """
-    return rotor_self_noise(
-        flow,
-        n_blades,
-        rotation_speed,
-        speed,
-        sound_speed,
-        AIR_VISCOSITY / density,
-        observers,
-        BANDS_HZ,
-        trip=trip,
-    )
+    return rotor_self_noise(flow, n_blades, state, observers, BANDS_HZ, model=model)

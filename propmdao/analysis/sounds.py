@@ -17,7 +17,7 @@ from propmdao.analysis.results import Analysis
 from propmdao.analysis.self_noise import BANDS_HZ
 from propmdao.formats.wav import Recording, write_wav
 
-MAX_CHANNELS = 16
+MAX_CHANNELS = 64
 
 
 def pressure_record(analysis: Analysis, duration: float) -> npt.NDArray[np.float64]:
@@ -75,10 +75,10 @@ def write_sound(
     ValueError
         If there are more than `MAX_CHANNELS` observers, or as in `pressure_record` and `write_wav`.
     """
-    if len(analysis.observers) > MAX_CHANNELS:
+    if len(analysis.listening.observers) > MAX_CHANNELS:
         raise ValueError(
             f"a sound file is of at most {MAX_CHANNELS} observers; there are"
-            f" {len(analysis.observers)}"
+            f" {len(analysis.listening.observers)}"
         )
     record = pressure_record(analysis, duration)
     if full_scale is None:

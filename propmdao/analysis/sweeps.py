@@ -12,35 +12,44 @@ import zlib
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import ExitStack, closing
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from typing import Any, Unpack
 
 from scipy.stats import qmc
 from tqdm import tqdm
 
+from propmdao.analysis.request import Asked, Request
 from propmdao.analysis.result_table import ResultTable, table_files
 from propmdao.propeller.description import Propeller
+from propmdao.propeller.identity import checksum
+from propmdao.records.models import Model
+from propmdao.records.plain import to_plain
+from propmdao.records.quantities import (
+    ASKED,
+    BROADBAND_LEVELS,
+    CHANGE,
+    LEVELS,
+    POINT,
+    RESULTS,
+    Quantity,
+)
 from propmdao.runtime.worker_processes import results_in_order, start_workers
 
-if TYPE_CHECKING:
-    from propmdao.acoustics.broadband.boundary_layer import Trip
-    from propmdao.records.listening import Surroundings
-
 Point = dict[str, float]
-#: What a point may give, with the value where it does not; None is the propeller's own.
-VARIABLES: dict[str, float | None] = {
-    "rpm": None,
-    "thrust_required": None,
-    "speed": 0.0,
-    "rho": 1.225,
-    "twist_offset_deg": 0.0,
-    "chord_factor": 1.0,
-    "diameter": None,
-    "n_blades": None,
+
+
+def _column(quantity: Quantity) -> str:
+    """Column of a value that a point may give: thrust is also the name of a result."""
+    return quantity.variable if quantity.name in RESULTS else quantity.json
+
+
+#: Values that a point may give, by their column.
+VARIABLES: dict[str, Quantity] = {
+    _column(quantity): quantity
+    for quantity in ASKED.values()
+    if quantity.record in (POINT, CHANGE) or quantity.name == "density"
 }
-_RESULTS = "rpm J thrust torque shaft_power CT CQ CP eta converged".split()
+_RESULTS = [name for name in ("rpm", *RESULTS) if name != "failure"]
 _WARNINGS = "warnings"
-_LEVELS = "spl_bpf_db oaspl_db oaspl_thickness_db oaspl_loading_db oaspl_dba".split()
-_BROADBAND = ("oaspl_broadband_db",)
 
 
 def grid(values: Mapping[str, Sequence[float]]) -> list[Point]:
@@ -49,7 +58,7 @@ def grid(values: Mapping[str, Sequence[float]]) -> list[Point]:
     Parameters
     ----------
     values : mapping of str to sequence of float
-        Values by variable, of `VARIABLES`.
+        Values by variable, keys of `VARIABLES`.
 
     Returns
     -------
@@ -131,12 +140,8 @@ def sweep(
     points: Iterable[Point],
     path: str | os.PathLike[str],
     *,
-    observers: Sequence[Sequence[float]] = (),
-    viscous: bool = True,
-    broadband: bool = False,
-    trip: Trip = "none",
-    surroundings: Surroundings | None = None,
     n_workers: int = 1,
+    **asked: Unpack[Asked],
 ) -> tuple[int, list[str]]:
     """Analyse a propeller at many points into a table.
 
@@ -152,14 +157,15 @@ def sweep(
         Values of `VARIABLES`, ``rpm`` or ``thrust_required`` [N] in each, the same in all;
         ``chord_factor`` stretches the chord, ``diameter`` [m] the whole blade.
     path : path
-        Table to make or go on with, a row per point, its variables with ``propeller`` and the
-        checksum ``blade`` of its description in front of what `propmdao.analyze` gives, levels
-        as ``oaspl_db@1.905m-45deg``, and what it warns of. CSV, or with the ending ``.parquet`` a
-        Parquet file that is written at the end beside the CSV file of the same name.
-    observers, viscous, broadband, trip, surroundings
-        As `propmdao.analyze` takes them; they are the same for all points.
+        Table to make or go on with, a row per point: its variables with ``propeller``, the checksum
+        ``blade`` of its description and all that was asked in front of what `propmdao.analyze`
+        gives, levels as ``oaspl_db@1.905m-45deg``, and what it warns of. CSV, or with the ending
+        ``.parquet`` a Parquet file that is written at the end beside the CSV file of the same name.
     n_workers : int
         Processes that analyse; 1: only this one.
+    **asked
+        Single values as `propmdao.analyze` takes them, the same for all points: observers,
+        surroundings, viscous, stall_delay, broadband, trip, fidelity, the air.
 
     Returns
     -------
@@ -176,32 +182,67 @@ def sweep(
         When a worker dies; the rows so far are in the table.
     """
     csv_file, parquet_file = table_files(path)
-    noise = {"broadband": broadband, "trip": trip, "surroundings": surroundings}
-    same = noise | {"viscous": viscous, "surroundings": str(surroundings or "free field")}
+    # Whatever is wrong with what all points share is said before the first of them.
+    request = Request.of(rpm=0.0, **asked)
+    same = _same_columns(request)
     complete = [_complete(propeller, point) | same for point in points]
     drives = {"rpm" if "rpm" in point else "thrust_required" for point in complete}
     if len(drives) != 1:
         raise ValueError("a sweep needs points, and in all of them rpm or in all thrust_required")
     point_columns = list(complete[0])
-    heard = [_suffix(*observer) for observer in observers]
-    of_noise = [*_LEVELS, *_BROADBAND] if broadband else _LEVELS
+    suffixes = _suffixes(request.listening.observers)
+    levels = [*LEVELS, *(BROADBAND_LEVELS if same["broadband"] else ())]
     results = [name for name in _RESULTS if name not in point_columns]
-    results += [name + suffix for suffix in heard for name in of_noise] + [_WARNINGS]
+    results += [name + suffix for suffix in suffixes for name in levels] + [_WARNINGS]
     table = ResultTable(csv_file, point_columns, results)
     new = [complete[place] for place in table.missing(complete)]
-    how = {name: value for name, value in noise.items() if value is not None}
-    analysed = partial(_analysed, propeller, how | {"observers": list(observers)})
+    analysed = partial(_analysed, propeller, asked, suffixes)
     with ExitStack() as stack:
         rows: Iterator[tuple[dict[str, Any], str]] = map(analysed, new)
         if n_workers > 1:
             workers = stack.enter_context(start_workers(n_workers))
             rows = stack.enter_context(closing(results_in_order(workers, analysed, new)))
         for point in tqdm(new, desc="sweep", unit="point", disable=None):
-            found, reason = next(rows)
-            table.add(point, {name: found[name] for name in results if name in found}, reason)
+            values, reason = next(rows)
+            table.add(point, {name: values[name] for name in results if name in values}, reason)
     if parquet_file is not None:
         table.write_parquet(parquet_file)
     return len(new), table.failures(complete)
+
+
+def _same_columns(request: Request) -> dict[str, Any]:
+    """Columns of what is asked of all points alike."""
+    loads, broadband = request.model.loads, request.model.noise.broadband
+    return {
+        "viscous": loads.viscous,
+        "stall_delay": loads.stall_delay,
+        "broadband": broadband is not None,
+        "trip": "none" if broadband is None else broadband.trip,
+        "surroundings": str(request.listening.surroundings),
+        "settings": " ".join(_other_settings(request)) or "default",
+    }
+
+
+def _other_settings(request: Request) -> Iterator[str]:
+    """What differs from the defaults and has no column of its own, as name=value."""
+    default = Request.of(rpm=0.0)
+    own = ("viscous", "stall_delay", "trip", "rho")
+
+    def leaves(value: Any, name: str = "") -> Iterator[tuple[str, Any]]:
+        if isinstance(value, dict):
+            for key, item in value.items():
+                yield from leaves(item, f"{name}.{key}" if name else key)
+        else:
+            yield name, value
+
+    for of_request, of_default in (
+        (request.model, Model(noise=request.model.noise)),
+        (request.point.air, default.point.air),
+    ):
+        known = dict(leaves(to_plain(of_default)))
+        for name, value in leaves(to_plain(of_request)):
+            if value != known[name] and name.split(".")[-1] not in own:
+                yield f"{name}={value}"
 
 
 def _complete(propeller: Propeller, point: Mapping[str, float]) -> dict[str, Any]:
@@ -216,62 +257,52 @@ def _complete(propeller: Propeller, point: Mapping[str, float]) -> dict[str, Any
     blades = point.get("n_blades", propeller.n_blades)
     if blades != int(blades):
         raise ValueError(f"n_blades must be a whole number; it is {blades:g}")
-    defaults = {**VARIABLES, "diameter": propeller.diameter}
+    defaults = {name: quantity.default for name, quantity in VARIABLES.items()}
+    defaults["diameter"] = propeller.diameter
     complete = {
         name: float(value) for name, value in {**defaults, **point}.items() if value is not None
     }
-    named = {"propeller": propeller.name, "blade": _checksum(propeller)}
+    named = {"propeller": propeller.name, "blade": checksum(propeller)}
     return {**named, **complete, "n_blades": int(blades)}
 
 
-def _checksum(propeller: Propeller) -> str:
-    """Tells descriptions of one name apart, such as a file before and after a change."""
-    description = json.dumps(dataclasses.asdict(propeller), default=lambda array: array.tolist())
-    return f"{zlib.crc32(description.encode()):08x}"
-
-
 def _analysed(
-    propeller: Propeller, how: Mapping[str, Any], point: Mapping[str, Any]
+    propeller: Propeller, asked: Asked, suffixes: Sequence[str], point: Mapping[str, Any]
 ) -> tuple[dict[str, Any], str]:
     """Results by column at a point, or none and the reason."""
     from propmdao.analysis.single_point import analyze  # slow to import
 
+    of_point = {
+        quantity.name: point[column] for column, quantity in VARIABLES.items() if column in point
+    }
+    # What is not changed is left out, so that the description stays as it is.
+    for name, described in (("diameter", propeller.diameter), ("n_blades", propeller.n_blades)):
+        if of_point[name] == described:
+            del of_point[name]
     try:
-        blade = dataclasses.replace(
-            propeller,
-            diameter=point["diameter"],
-            n_blades=point["n_blades"],
-            c_over_R=propeller.c_over_R * point["chord_factor"],
-        )
         with warnings.catch_warnings(record=True) as caught:
             warnings.simplefilter("always")
-            results = analyze(
-                blade,
-                rpm=point.get("rpm"),
-                thrust=point.get("thrust_required"),
-                speed=point["speed"],
-                density=point["rho"],
-                twist_offset_deg=point["twist_offset_deg"],
-                viscous=point["viscous"],
-                **how,
-            ).to_dict()
+            results = analyze(propeller, **{**asked, **of_point}).to_dict()
     except ValueError as error:
         return {}, str(error)
     except Exception as error:  # a survey of thousands of points does not end at one of them
         return {}, f"{type(error).__name__}: {error}"
-    suffixes = [_suffix(*observer) for observer in how["observers"]]
     levels = {
-        name + suffix: heard[name]
-        for heard, suffix in zip(results.pop("observers"), suffixes, strict=True)
-        for name in (*_LEVELS, *_BROADBAND)
-        if name in heard
+        name + suffix: observer[name]
+        for observer, suffix in zip(results.pop("observers"), suffixes, strict=True)
+        for name in (*LEVELS, *BROADBAND_LEVELS)
+        if name in observer
     }
     results[_WARNINGS] = "; ".join(" ".join(str(warning.message).split()) for warning in caught)
     unconverged = "" if results["converged"] else "the solution has not converged"
     return results | levels, results.get("failure") or unconverged
 
 
-def _suffix(radius: float, elevation_deg: float, azimuth_deg: float = 0.0) -> str:
+def _suffixes(observers: Any) -> list[str]:
     """What tells the columns of one observer from those of another."""
-    azimuth = f"_az{azimuth_deg:+g}deg" if azimuth_deg else ""
-    return f"@{radius:g}m{elevation_deg:+g}deg{azimuth}"
+    from propmdao.acoustics.kinematics.observers import directions  # slow to import
+
+    return [
+        f"@{radius:g}m{elevation:+g}deg" + (f"_az{azimuth:+g}deg" if azimuth else "")
+        for radius, elevation, azimuth in zip(*directions(observers).rounded(), strict=True)
+    ]

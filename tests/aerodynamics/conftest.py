@@ -1,13 +1,14 @@
 """Blades and air that the aerodynamics tests share."""
 
-import numpy as np
 import pytest
 
+from propmdao.aerodynamics.rotor_geometry import RotorGeometry
+from propmdao.aerodynamics.solutions.case import RotorCase
 from propmdao.formats.propellers import load_propeller
 from propmdao.geometry.blade import Blade, span_interpolation
 from propmdao.geometry.lattice import lattice_nodes, lattice_span
-
-RPM = np.pi / 30.0
+from propmdao.records.air import Air
+from propmdao.records.states import RotorState
 
 
 class SlowFlyer:
@@ -26,6 +27,12 @@ class SlowFlyer:
         """Lattice of the blade, coarse by default so that the tests are quick."""
         span = span_interpolation(self.stations, lattice_span(self.stations[0], n_spanwise))
         return lattice_nodes(self.blade, span, n_chordwise)
+
+    def case(self, rotation_speed=440.0, speed=8.0, density=1.225, n_blades=2, nodes=None):
+        """The rotor as the solvers take it, in inviscid flow."""
+        nodes = self.nodes() if nodes is None else nodes
+        state = RotorState(rotation_speed, speed, Air(density=density))
+        return RotorCase(RotorGeometry(nodes, self.radius, n_blades), state)
 
 
 @pytest.fixture(scope="session")

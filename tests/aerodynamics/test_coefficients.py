@@ -4,11 +4,13 @@ import numpy as np
 import pytest
 
 from propmdao.aerodynamics.coefficients import coefficients
+from propmdao.records.air import Air
+from propmdao.records.states import RotorState
 
 
 def test_definitions_with_n_in_revolutions_per_second():
     n, D, rho, T, Q, V = 70.0, 0.28, 1.2, 1.5, 0.03, 8.0
-    c = coefficients(T, Q, 2 * np.pi * n, V, rho, D)
+    c = coefficients(T, Q, RotorState(2 * np.pi * n, V, Air(density=rho)), D)
     assert pytest.approx(V / (n * D)) == c.J
     assert pytest.approx(T / (rho * n**2 * D**4)) == c.CT
     assert pytest.approx(Q / (rho * n**2 * D**5)) == c.CQ
@@ -17,5 +19,5 @@ def test_definitions_with_n_in_revolutions_per_second():
 
 
 def test_at_rest_all_are_zero():
-    c = coefficients(0.0, 0.0, 0.0, 8.0, 1.2, 0.28)
+    c = coefficients(0.0, 0.0, RotorState(0.0, 8.0, Air()), 0.28)
     assert (c.J, c.CT, c.CQ, c.CP, c.eta) == (0.0,) * 5

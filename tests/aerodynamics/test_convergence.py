@@ -1,25 +1,27 @@
 """How far the default lattice and wake are from finer ones: as docs/verification.md shows."""
 
+import dataclasses
+
 import numpy as np
 import pytest
 
-from propmdao.aerodynamics.solutions.axial import WAKE_AGES, solve_steady
-from propmdao.aerodynamics.wakes.ages import wake_azimuths
+from propmdao.aerodynamics.solutions.axial import solve
+from propmdao.aerodynamics.wakes.helical import wake_transport
+from propmdao.records.wake_law import WakeGrid
 
-OMEGA, SPEED = 440.0, 8.0
-DEG = np.pi / 180.0
+SPEED = 8.0
 
 
 @pytest.fixture(scope="module")
 def loads(slow_flyer):
-    """Thrust and torque on the lattice (nc, ns) with the wake's nodes at given ages."""
+    """Thrust and torque on the lattice (nc, ns) with the wake's nodes on a grid."""
 
-    def solve(n_chordwise=8, n_spanwise=24, ages=WAKE_AGES, speed=SPEED):
-        nodes = slow_flyer.nodes(n_chordwise, n_spanwise)
-        solution = solve_steady(nodes, 2, slow_flyer.radius, OMEGA, speed, 1.225, wake_ages=ages)
+    def thrust_and_torque(n_chordwise=8, n_spanwise=24, grid=WakeGrid(), speed=SPEED):  # noqa: B008
+        case = slow_flyer.case(speed=speed, nodes=slow_flyer.nodes(n_chordwise, n_spanwise))
+        solution = solve(dataclasses.replace(case, wake=wake_transport(grid=grid)))
         return np.array([solution.thrust, solution.torque])
 
-    return solve
+    return thrust_and_torque
 
 
 @pytest.mark.parametrize(
@@ -32,5 +34,5 @@ def test_lattice(loads, lattice, error):
 @pytest.mark.parametrize(("speed", "error"), [(0.0, 0.015), (SPEED, 0.003)])
 def test_helix_step_and_wake_length(loads, speed, error):
     # Hover is the hardest: the wake leaves slowly, so that turns are close and many count.
-    reference = loads(ages=wake_azimuths(16.0, 2 * DEG, 1.03, 10 * DEG), speed=speed)
+    reference = loads(grid=WakeGrid(16.0, 2.0, 1.03, 10.0), speed=speed)
     np.testing.assert_allclose(loads(speed=speed), reference, rtol=error)

@@ -4,8 +4,7 @@ import jax.numpy as jnp
 import numpy as np
 
 from propmdao.aerodynamics.lattice.rings import Rings, blade_influence, wake_influence
-from propmdao.aerodynamics.solutions.axial import WAKE_AGES, Flow, loads_at
-from propmdao.aerodynamics.solutions.lattice_loads import lattice_geometry
+from propmdao.aerodynamics.solutions.axial import flow_at, loads_at
 from propmdao.aerodynamics.vortices.cores import core_radius
 from propmdao.aerodynamics.wakes.helical import helical_wake
 
@@ -23,25 +22,27 @@ def turned(vectors, blade):
 
 def test_one_blade_for_all_is_all_blades_solved(slow_flyer):
     nodes, radius = slow_flyer.nodes(3, 6), slow_flyer.radius
-    lattice = lattice_geometry(nodes, B, radius)
-    flow = Flow(lattice, radius, OMEGA, SPEED, DENSITY, None)
-    by_symmetry = loads_at(flow, B, INDUCED).circulation
+    case = slow_flyer.case(OMEGA, SPEED, DENSITY, n_blades=B, nodes=nodes)
+    flow = flow_at(case)
+    lattice = flow.lattice
+    by_symmetry = loads_at(flow, INDUCED).circulation
 
     # All blades on their own: unknowns of every blade, each with its own single-bladed influence.
     rings = [
         Rings(*(turned(a, b) for a in (lattice.rings.corner, *_points_and_normals(lattice.rings))))
         for b in range(B)
     ]
-    ages = jnp.asarray(WAKE_AGES)
-    core = core_radius(ages, OMEGA, 1.46e-5, 1e-4 * radius)
+    core = core_radius(jnp.asarray(case.wake.ages), OMEGA, 1.46e-5, 1e-4 * radius)
     rows = []
-    for at in rings:
+    for felt in rings:
         row = []
-        for of in rings:
-            influence = blade_influence(at.collocation, of, 1, radius)
-            wake = helical_wake(of.corner[-1], ages, B, radius, OMEGA, SPEED, INDUCED)[:, :1]
-            influence = influence.at[:, -1].add(wake_influence(at.collocation, wake, core))
-            row.append(jnp.einsum("cijp,pc->pij", influence, at.normal).reshape(18, 18))
+        for inducing in rings:
+            influence = blade_influence(felt.collocation, inducing, np.zeros(1), 1e-4 * radius)
+            wake = helical_wake(inducing.corner[-1], case.wake, case.rotor, case.state, INDUCED)[
+                :, :1
+            ]
+            influence = influence.at[:, -1].add(wake_influence(felt.collocation, wake, core))
+            row.append(jnp.einsum("cijp,pc->pij", influence, felt.normal).reshape(18, 18))
         rows.append(row)
     onset = [
         OMEGA * (r.collocation[:, 1] * r.normal[:, 0] - r.collocation[:, 0] * r.normal[:, 1])
@@ -55,3 +56,14 @@ def test_one_blade_for_all_is_all_blades_solved(slow_flyer):
 
 def _points_and_normals(rings):
     return rings.collocation, rings.normal
+
+
+def test_blades_summed_in_one_call_are_the_sum_of_their_own(slow_flyer):
+    flow = flow_at(slow_flyer.case(OMEGA, SPEED, n_blades=B, nodes=slow_flyer.nodes(3, 6)))
+    rotor, rings = flow.case.rotor, flow.lattice.rings
+    core = 1e-4 * slow_flyer.radius
+    each = [
+        blade_influence(flow.lattice.points, rings, azimuth[None], core)
+        for azimuth in rotor.azimuths
+    ]
+    np.testing.assert_allclose(sum(each), flow.lattice.influence, rtol=1e-12, atol=1e-12)

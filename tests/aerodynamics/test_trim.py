@@ -1,61 +1,68 @@
 """Rotation speed for a required thrust, from any bounds, or a clear refusal."""
 
+import types
+
 import jax
+import jax.numpy as jnp
 import numpy as np
 import pytest
 
-from propmdao.aerodynamics.solutions.axial import solve_steady
+from propmdao.aerodynamics.solutions import axial
 from propmdao.aerodynamics.trim import (
+    LARGEST_TIP_SPEED,
+    LEAST_TIP_SPEED,
+    Bounds,
     TrimError,
+    require_bounds,
+    rotation_bounds,
     rotation_speed_by_interpolation,
-    rotation_speed_for_thrust,
-    solve_rotation_speed,
+    solve_for_thrust,
+    trim,
 )
+from propmdao.records.units import RAD_PER_S
 
-RPM = np.pi / 30.0
+
+def bounds_of(low_rpm, high_rpm):
+    return Bounds(low_rpm * RAD_PER_S, high_rpm * RAD_PER_S)
 
 
-def trim(rotor, thrust, speed, low, high):
-    return rotation_speed_for_thrust(
-        rotor.nodes(), 2, rotor.radius, speed, rotor.density, thrust, (low * RPM, high * RPM)
-    )
+def trimmed(rotor, thrust, speed, low, high):
+    return trim(axial, rotor.case(speed=speed), thrust, bounds_of(low, high))
 
 
 def thrust_at(rotor, omega, speed):
-    solution = solve_steady(
-        rotor.nodes(), 2, rotor.radius, float(omega), float(speed), rotor.density
-    )
-    return float(solution.thrust)
+    return float(axial.solve(rotor.case(float(omega), float(speed))).thrust)
 
 
 @pytest.mark.parametrize("speed", [0.0, 8.0, 25.0])
 @pytest.mark.parametrize("bounds", [(200.0, 25000.0), (1500.0, 12000.0)])
 def test_thrust_is_met_from_any_bounds(slow_flyer, speed, bounds):
-    omega = trim(slow_flyer, 1.2, speed, *bounds)
-    assert bounds[0] * RPM < omega < bounds[1] * RPM
+    omega, loads = trimmed(slow_flyer, 1.2, speed, *bounds)
+    assert bounds[0] * RAD_PER_S < omega < bounds[1] * RAD_PER_S
     assert thrust_at(slow_flyer, omega, speed) == pytest.approx(1.2, rel=1e-7)
+    assert float(loads.thrust) == pytest.approx(1.2, rel=1e-7)
 
 
 def test_zero_thrust_is_found_between_windmilling_and_pulling(slow_flyer):
-    omega = trim(slow_flyer, 0.0, 8.0, 500.0, 9000.0)
+    omega, _ = trimmed(slow_flyer, 0.0, 8.0, 500.0, 9000.0)
     assert abs(thrust_at(slow_flyer, omega, 8.0)) < 1e-7
 
 
 @pytest.mark.parametrize(("thrust", "end"), [(50.0, "5500 rpm"), (0.01, "3500 rpm")])
 def test_thrust_out_of_reach_is_refused_with_what_the_bounds_give(slow_flyer, thrust, end):
     with pytest.raises(TrimError, match=f"thrust {thrust:g} N is out of reach.*{end}") as error:
-        trim(slow_flyer, thrust, 0.0, 3500.0, 5500.0)
+        trimmed(slow_flyer, thrust, 0.0, 3500.0, 5500.0)
     assert "\n" not in str(error.value)
 
 
 def test_bounds_must_increase(slow_flyer):
     with pytest.raises(TrimError, match="rpm bounds must be positive and increasing"):
-        trim(slow_flyer, 1.0, 0.0, 5500.0, 3500.0)
+        trimmed(slow_flyer, 1.0, 0.0, 5500.0, 3500.0)
 
 
 def test_two_speed_rule_of_the_thesis_errs_by_a_few_percent(slow_flyer):
-    args = (slow_flyer.nodes(), 2, slow_flyer.radius, 8.0, 1.225, 1.8, 4000 * RPM, 5000 * RPM)
-    omega = rotation_speed_by_interpolation(*args)
+    two = bounds_of(4000.0, 5000.0)
+    omega = rotation_speed_by_interpolation(axial, slow_flyer.case(), 1.8, two)
     error = thrust_at(slow_flyer, omega, 8.0) / 1.8 - 1.0
     # The thrust is convex in the rotation speed, so it lies below the chord: the thesis says < 5 %.
     assert -0.05 < error < -0.005
@@ -65,9 +72,8 @@ def test_derivatives_are_those_of_the_implicit_function(slow_flyer):
     nodes = slow_flyer.nodes(2, 5)
 
     def omega(speed, density, thrust):
-        return solve_rotation_speed(
-            nodes, 2, 0.1397, speed, density, thrust, 2000 * RPM, 9000 * RPM
-        )[0]
+        case = slow_flyer.case(speed=speed, density=density, nodes=nodes)
+        return solve_for_thrust(axial, case, thrust, bounds_of(2000.0, 9000.0)).rotation_speed
 
     at = np.array([8.0, 1.2, 1.3])
     exact = jax.grad(omega, argnums=(0, 1, 2))(*at)
@@ -76,3 +82,40 @@ def test_derivatives_are_those_of_the_implicit_function(slow_flyer):
         step = h * np.eye(3)[i]
         central = (omega(*(at + step)) - omega(*(at - step))) / (2 * h)
         assert float(slope) == pytest.approx(float(central), rel=1e-6)
+
+
+def test_any_solver_can_be_trimmed(slow_flyer):
+    # T = a Omega^2 - b V Omega, a solver that is no lattice.
+    def thrust_of(case, rotation_speed):
+        return 2e-5 * rotation_speed**2 - 1e-4 * case.state.speed * rotation_speed
+
+    solver = types.SimpleNamespace(
+        solve=lambda case: types.SimpleNamespace(thrust=thrust_of(case, case.state.rotation_speed)),
+        flow_at=lambda case: case,
+        evaluate=lambda flow, required, omega: (thrust_of(flow, omega), {"twice": 2.0 * omega}),
+        solution=lambda flow, required, omega, results: results["twice"],
+    )
+    solver = _hashable(solver)
+    omega, loads = trim(solver, slow_flyer.case(speed=5.0), 2.0, Bounds(10.0, 900.0))
+    exact = (5e-4 + np.sqrt(25e-8 + 4 * 2e-5 * 2.0)) / 4e-5
+    assert omega == pytest.approx(exact, rel=1e-8)
+    assert float(loads) == pytest.approx(2.0 * exact, rel=1e-8)
+    with pytest.raises(TrimError, match="out of reach"):
+        trim(solver, slow_flyer.case(speed=5.0), 50.0, Bounds(10.0, 900.0))
+
+
+def _hashable(namespace):
+    """As modules are: equal to itself alone."""
+    return type("Solver", (), {k: staticmethod(v) for k, v in vars(namespace).items()})
+
+
+@pytest.mark.parametrize("speed", [0.0, 100.0])
+def test_bounds_by_the_speed_of_the_tip(speed):
+    bounds = rotation_bounds(0.2, speed)
+    assert float(bounds.low) == pytest.approx(LEAST_TIP_SPEED / 0.2)
+    assert np.hypot(float(bounds.high) * 0.2, speed) == pytest.approx(LARGEST_TIP_SPEED)
+
+
+def test_a_flight_that_is_too_fast_for_any_rotation_is_refused():
+    with pytest.raises(TrimError, match="speed must be below 306.265 m/s to trim; it is 320"):
+        require_bounds(rotation_bounds(jnp.asarray(0.2), 320.0), 320.0)

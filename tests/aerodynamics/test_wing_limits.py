@@ -7,9 +7,16 @@ import jax.numpy as jnp
 import numpy as np
 import pytest
 
-from propmdao.aerodynamics.solutions.lattice_loads import lattice_geometry, loads_with_wake
+from propmdao.aerodynamics.rotor_geometry import RotorGeometry
+from propmdao.aerodynamics.solutions.lattice_loads import (
+    axial_onset,
+    lattice_geometry,
+    loads_with_wake,
+)
 from propmdao.geometry.lattice import lattice_chord_fraction
 from propmdao.propeller.airfoils.airfoil import CHORD_FRACTION, naca4_camber_line
+from propmdao.records.air import Air
+from propmdao.records.states import RotorState
 
 SPEED = 10.0
 DENSITY = 1.2
@@ -31,11 +38,13 @@ def wing_nodes(span, chord, alpha, n_chordwise, n_spanwise, camber=lambda x: 0.0
 def wing_loads(nodes, span):
     """Circulation per strip, lift and drag, with a straight wake along the stream."""
     # The "radius" only scales the bound vortices' core; a unit is the chord of the long wing.
-    lattice = lattice_geometry(nodes, 1, 1.0)
+    lattice = lattice_geometry(RotorGeometry(nodes, 1.0, 1))
     edge = lattice.rings.corner[-1]
     length = jnp.asarray([0.0, 0.1, 1.0, 10.0, 100.0]) * span
     wake = edge[:, None, None, :] - length[None, None, :, None] * jnp.array([0.0, 0.0, 1.0])
-    loads = loads_with_wake(lattice, wake, jnp.full(4, 1e-6), 0.0, SPEED, 0.0, DENSITY, None)
+    air = Air(density=DENSITY)
+    onset = axial_onset(lattice, RotorState(0.0, SPEED, air), 0.0)
+    loads = loads_with_wake(lattice, wake, jnp.full(4, 1e-6), onset, air, None)
     force = loads.force.sum(axis=0)
     return loads, -force[1], -force[2]
 

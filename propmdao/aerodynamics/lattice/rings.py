@@ -18,7 +18,7 @@ from propmdao.geometry.lattice import lattice_chord_fraction
 from propmdao.records.pytrees import Scalar, record
 
 # Bound vortices need no physical core; this one only keeps a segment's velocity on itself at zero.
-BOUND_CORE = 1.0e-4  # of the radius
+BOUND_CORE = 1.0e-4  # of the tip radius
 
 
 @record
@@ -132,17 +132,20 @@ def segment_circulation(circulation: Array) -> tuple[Array, Array]:
     return bound, padded[:, :-1] - padded[:, 1:]
 
 
-def on_every_blade(points: Array, n_blades: int) -> Array:
-    """Copies of points (n, 3) of blade 1 on every blade: (n_blades, n, 3)."""
-    angle = 2.0 * np.pi / n_blades * np.arange(n_blades)[:, None]
+def turned(points: Array, azimuths: np.ndarray) -> Array:
+    """Copies of points (n, 3) of blade 1 on the blades at some azimuths: (n_blades, n, 3)."""
+    angle = azimuths[:, None]
     x, y, z = points[:, 0], points[:, 1], points[:, 2]
     cos, sin = np.cos(angle), np.sin(angle)
-    z = jnp.broadcast_to(z, (n_blades, z.size))
+    z = jnp.broadcast_to(z, (azimuths.size, z.size))
     return jnp.stack([cos * x - sin * y, sin * x + cos * y, z], axis=-1)
 
 
-def blade_influence(points: Array, rings: Rings, n_blades: int, radius: Scalar) -> Array:
-    """Velocity at the points per unit circulation of each ring of all blades, wake left out.
+def blade_influence(points: Array, rings: Rings, azimuths: np.ndarray, core: Scalar) -> Array:
+    """Velocity at the points per unit circulation of each ring of some blades, wake left out.
+
+    Blades that carry the same circulation are summed in one call, which is the fast path of flow
+    that is symmetric about the axis: all azimuths together. Where blades differ, each has a call.
 
     Parameters
     ----------
@@ -150,10 +153,10 @@ def blade_influence(points: Array, rings: Rings, n_blades: int, radius: Scalar) 
         Where the velocity is wanted [m].
     rings : Rings
         Lattice of blade 1.
-    n_blades : int
-        Number of equally spaced blades.
-    radius : float
-        Tip radius [m].
+    azimuths : (n_blades,) array
+        Of the blades that are summed, from that of blade 1 [rad].
+    core : float
+        Core radius of the segments, positive [m].
 
     Returns
     -------
@@ -163,10 +166,10 @@ def blade_influence(points: Array, rings: Rings, n_blades: int, radius: Scalar) 
     nc, ns = rings.corner.shape[0] - 1, rings.corner.shape[1] - 1
     (root, tip), (ahead, behind) = bound_segments(rings), chordwise_segments(rings)
     start, end = (
-        on_every_blade(jnp.concatenate([b.reshape(-1, 3), c.reshape(-1, 3)]), n_blades)
+        turned(jnp.concatenate([b.reshape(-1, 3), c.reshape(-1, 3)]), azimuths)
         for b, c in ((root, ahead), (tip, behind))
     )
-    velocity = segment_velocities(points, start, end, BOUND_CORE * radius)
+    velocity = segment_velocities(points, start, end, core)
     bound = velocity[:, : nc * ns].reshape(3, nc, ns, -1)
     chordwise = velocity[:, nc * ns :].reshape(3, nc, ns + 1, -1)
     ring = bound + chordwise[:, :, 1:] - chordwise[:, :, :-1]
@@ -181,7 +184,7 @@ def wake_influence(points: Array, wake_nodes: Array, wake_core_radius: Array) ->
     points : (n_points, 3) array
         Where the velocity is wanted [m].
     wake_nodes : (ns + 1, n_blades, n_nodes, 3) array
-        Trailing filaments of all blades [m].
+        Trailing filaments of the blades that are summed, because their circulation is the same [m].
     wake_core_radius : (n_nodes - 1,) array
         Core radius along the filaments [m].
 

@@ -1,9 +1,9 @@
 """What the sections of a blade do in viscous flow, as the lattice is held to it.
 
-Past stall, where cl falls with alpha, strips much narrower than their chord could trade lift with
-their neighbours, in many ways at will. A polar is that of a section, which has no meaning over less
-span than a chord: what the polar takes off the lift of thin-airfoil theory, cl - cl_p, enters as
-its mean over the span nearby. That leaves one solution on any mesh.
+Past stall, where cl falls with alpha, the equations of strips much narrower than their chord have
+many solutions, in which neighbouring strips exchange lift. A polar is that of a section, which has
+no meaning over less span than a chord: what the polar takes off the lift of thin-airfoil theory,
+cl - cl_p, enters as its mean over the span nearby. That leaves one solution on any mesh.
 """
 
 from __future__ import annotations
@@ -21,9 +21,9 @@ from propmdao.aerodynamics.sections.polars.table import (
 )
 from propmdao.aerodynamics.sections.stall_delay import delay_factor, delayed_stall
 from propmdao.geometry.blade import Blade, SpanInterpolation
+from propmdao.records.air import Air
 from propmdao.records.pytrees import Scalar, record
 
-AIR_VISCOSITY = 1.789e-5  # dynamic, at 15 C [Pa s]
 _MIXING = 0.5  # standard deviation of the mean over the span, in chords
 
 
@@ -35,15 +35,11 @@ class ViscousSections:
     ----------
     polars : PolarTable
         Polars of the sections in the middle of the strips, ns rows.
-    dynamic_viscosity, sound_speed : float
-        Of the air [Pa s], [m/s].
     stall_delay : float
         1 where rotation delays stall, 0 for polars as in two dimensions.
     """
 
     polars: PolarTable
-    dynamic_viscosity: Scalar
-    sound_speed: Scalar
     stall_delay: Scalar
 
 
@@ -51,10 +47,9 @@ def viscous_sections(
     polars: SectionPolars,
     blade: Blade,
     section_radii: SpanInterpolation,
-    sound_speed: Scalar,
     stall_delay: Scalar = 1.0,
 ) -> ViscousSections:
-    """Sections of a blade in air of 15 C viscosity.
+    """Sections of a blade in viscous flow.
 
     Parameters
     ----------
@@ -64,8 +59,8 @@ def viscous_sections(
         Its blade, modified or not.
     section_radii : SpanInterpolation
         From the blade's stations to `propmdao.aerodynamics.lattice.strips.strip_radii`.
-    sound_speed, stall_delay : float
-        As in `ViscousSections`.
+    stall_delay : float
+        1 where rotation delays stalls, 0 for polars as in two dimensions.
 
     Returns
     -------
@@ -73,8 +68,7 @@ def viscous_sections(
         What the lattice is held to.
     """
     table = blade_tables(polars, blade, section_radii)
-    values = (jnp.asarray(value, float) for value in (AIR_VISCOSITY, sound_speed, stall_delay))
-    return ViscousSections(table, *values)
+    return ViscousSections(table, jnp.asarray(stall_delay, float))
 
 
 @record
@@ -111,7 +105,7 @@ class SectionLaws:
 
 
 def section_laws(
-    strips: Strips, turning: Array, axial_speed: Scalar, density: Scalar, sections: ViscousSections
+    strips: Strips, turning: Array, axial_speed: Scalar, air: Air, sections: ViscousSections
 ) -> SectionLaws:
     """Polars of the strips at an operating point.
 
@@ -121,10 +115,12 @@ def section_laws(
         The sections.
     turning : (ns,) array
         Speed of rotation [m/s].
-    axial_speed, density : float
-        Flight and induced speed at the disk [m/s], density of the air [kg/m^3].
+    axial_speed : float
+        Flight and induced speed at the disk [m/s].
+    air : Air
+        The undisturbed air.
     sections : ViscousSections
-        Their polars at any.
+        Polars of the strips at any operating point.
 
     Returns
     -------
@@ -132,8 +128,8 @@ def section_laws(
         Lift and drag by the angle of attack alone.
     """
     w = jnp.hypot(turning, axial_speed)
-    reynolds = density * w * strips.chord / sections.dynamic_viscosity
-    curves = section_curves(sections.polars, reynolds, w / sections.sound_speed)
+    reynolds = air.density * w * strips.chord / air.dynamic_viscosity
+    curves = section_curves(sections.polars, reynolds, w / air.sound_speed)
     tip_speed = turning / strips.r_over_R
     turning_share = tip_speed / jnp.hypot(tip_speed, axial_speed)
     factor = delay_factor(strips.chord / strips.radius, strips.r_over_R, turning_share)

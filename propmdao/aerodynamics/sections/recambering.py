@@ -17,7 +17,7 @@ What the polar takes off the lift of thin-airfoil theory enters as its mean over
 
 from __future__ import annotations
 
-from typing import Any
+from typing import NamedTuple
 
 import jax
 import jax.numpy as jnp
@@ -137,25 +137,33 @@ def solve_recambering(flow: StripFlow, laws: SectionLaws) -> Array:
     def residual(delta: Array) -> Array:
         return _residual(fixed_flow, fixed_laws, delta)
 
-    def unfinished(state: Any) -> Array:
-        count, _, missing, _ = state
-        return (count < _MAX_STEPS) & (jnp.abs(missing).max() > _TOLERANCE)
+    def unfinished(state: _Newton) -> Array:
+        return (state.n_trials < _MAX_STEPS) & (jnp.abs(state.missing).max() > _TOLERANCE)
 
-    def step(state: Any) -> Any:
-        count, delta, _, _ = state
+    def step(state: _Newton) -> _Newton:
+        delta = state.recambering
         missing, slope = _residual_and_slope(fixed_flow, fixed_laws, delta)
         newton = -jnp.linalg.solve(slope, missing)
         newton = newton * jnp.minimum(1.0, _LONGEST_STEP / jnp.abs(newton).max())
         trials = delta + fractions * newton
         best = jnp.argmin((jax.vmap(residual)(trials) ** 2).sum(axis=1))
         settled = jnp.abs(missing).max() <= _TOLERANCE
-        return count + 1, jnp.where(settled, delta, trials[best]), missing, slope
+        return _Newton(state.n_trials + 1, jnp.where(settled, delta, trials[best]), missing, slope)
 
-    start: Any = (0, jnp.zeros(ns), jnp.full(ns, jnp.inf), jnp.eye(ns))
-    _, delta, _, slope = jax.lax.while_loop(unfinished, step, start)
+    start = _Newton(0, jnp.zeros(ns), jnp.full(ns, jnp.inf), jnp.eye(ns))
+    end = jax.lax.while_loop(unfinished, step, start)
     # One more Newton step, in which alone the arguments count: its slope is that of the solution.
-    delta, slope = jax.lax.stop_gradient((delta, slope))
+    delta, slope = jax.lax.stop_gradient((end.recambering, end.slope))
     return delta - jnp.linalg.solve(slope, _residual(flow, laws, delta))
+
+
+class _Newton(NamedTuple):
+    """State of Newton's method."""
+
+    n_trials: Array | int
+    recambering: Array
+    missing: Array
+    slope: Array
 
 
 def _residual(flow: StripFlow, laws: SectionLaws, recambering: Array) -> Array:

@@ -1,117 +1,95 @@
-"""Steady lattice in the rotating frame: loads at a rotation speed and a flight speed.
+"""Steady lattice in the rotating frame: loads of a rotor in axial flight.
 
 The wake is carried by the free stream and by the induced velocity w, w follows from the thrust by
 momentum theory, and the thrust from the lattice in that wake: one scalar equation,
 w = momentum(thrust(w)), whatever the flight speed; hover is V = 0.
+
+`solve` is the solution at a rotation speed. `flow_at`, `evaluate` and `solution` are what a trim
+needs of it (`propmdao.aerodynamics.trim.Solver`).
 """
 
 from __future__ import annotations
 
 import dataclasses
-from functools import partial
 
 import jax
 import jax.numpy as jnp
-import numpy as np
 from jax import Array
 
 from propmdao.aerodynamics.lattice.rings import BOUND_CORE
-from propmdao.aerodynamics.sections.laws import ViscousSections
+from propmdao.aerodynamics.solutions.case import RotorCase
 from propmdao.aerodynamics.solutions.lattice_loads import (
     LatticeGeometry,
     LatticeLoads,
+    axial_onset,
     lattice_geometry,
     loads_with_wake,
 )
-from propmdao.aerodynamics.solutions.result import SETTLED, SteadySolution, strip_loads
+from propmdao.aerodynamics.solutions.result import SETTLED, RotorLoads, strip_loads
 from propmdao.aerodynamics.solutions.roots import at_root, decreasing_root
 from propmdao.aerodynamics.vortices.cores import core_radius
-from propmdao.aerodynamics.wakes.ages import wake_azimuths
 from propmdao.aerodynamics.wakes.helical import helical_wake
 from propmdao.aerodynamics.wakes.momentum import momentum_induced_velocity
 from propmdao.records.loads import PointLoads
 from propmdao.records.pytrees import Scalar, record
 from propmdao.runtime.compilation import compiled
 
-# Six turns from 10 deg steps at the blade to 30 deg. Against sixteen turns at 2 to 10 deg, with
-# seven times the segments: thrust and torque within 0.15 %, in hover, where the wake leaves slowly,
-# 1.4 % and 0.9 % (docs/verification.md).
-WAKE_AGES = wake_azimuths(
-    turns=6.0, first_step=np.radians(10.0), growth=1.1, last_step=np.radians(30.0)
-)
 _KINEMATIC_VISCOSITY = 1.46e-5  # air at 15 C [m^2/s]; only the wake's core knows it
 _TOLERANCE = 1.0e-9  # relative, in the induced velocity
 _GUESS = 0.05  # of the tip speed
 
 
 @record
-class Flow:
-    """A lattice at an operating point.
+class AxialFlow:
+    """A case with the part of its lattice that no operating point changes.
 
     Attributes
     ----------
+    case : RotorCase
+        What is solved; its rotation speed is not 0.
     lattice : LatticeGeometry
         Lattice of blade 1.
-    radius, rotation_speed, speed, density : float
-        Tip radius [m], rotation speed, not 0 [rad/s], axial flight speed [m/s], air density
-        [kg/m^3].
-    sections : ViscousSections or None
-        Polars that the lattice is held to; None for inviscid flow.
     """
 
+    case: RotorCase
     lattice: LatticeGeometry
-    radius: Scalar
-    rotation_speed: Scalar
-    speed: Scalar
-    density: Scalar
-    sections: ViscousSections | None
+
+    def turning(self, rotation_speed: Scalar) -> AxialFlow:
+        """The same flow at another rotation speed [rad/s]."""
+        return AxialFlow(self.case.turning(rotation_speed), self.lattice)
 
 
-_Params = tuple[Flow, Array, Array]  # with the wake's ages and the thrust guessed
+_Params = tuple[AxialFlow, Array]  # with the thrust guessed
 
 
-def flow_at(
-    nodes: Array,
-    n_blades: int,
-    radius: Scalar,
-    rotation_speed: Scalar,
-    speed: Scalar,
-    density: Scalar,
-    sections: ViscousSections | None,
-) -> Flow:
-    """Lattice at an operating point.
+def flow_at(case: RotorCase) -> AxialFlow:
+    """Prepare a case: what of the lattice no operating point changes.
 
     Parameters
     ----------
-    nodes : (nc + 1, ns + 1, 3) array
-        Corner points of the lattice of blade 1 [m].
-    n_blades : int
-        Number of equally spaced blades.
-    radius, rotation_speed, speed, density, sections
-        As in `Flow`.
+    case : RotorCase
+        What is solved.
 
     Returns
     -------
-    Flow
-        With the geometry of the lattice.
+    AxialFlow
+        The case with its lattice, all numbers as floats.
     """
-    return Flow(
-        lattice=lattice_geometry(nodes, n_blades, radius),
-        radius=jnp.asarray(radius, float),
-        rotation_speed=jnp.asarray(rotation_speed, float),
-        speed=jnp.asarray(speed, float),
-        density=jnp.asarray(density, float),
-        sections=sections,
+    case = dataclasses.replace(
+        case,
+        rotor=jax.tree.map(lambda x: jnp.asarray(x, float), case.rotor),
+        state=jax.tree.map(lambda x: jnp.asarray(x, float), case.state),
     )
+    return AxialFlow(case, lattice_geometry(case.rotor))
 
 
-def induced_velocity(flow: Flow, thrust: Scalar) -> Array:
+def induced_velocity(flow: AxialFlow, thrust: Scalar) -> Array:
     """Induced velocity at the disk by momentum theory.
 
     Parameters
     ----------
-    flow : Flow
-        Lattice and operating point.
+    flow : AxialFlow
+        Case with its lattice.
     thrust : float
         Thrust of all blades [N].
 
@@ -120,101 +98,70 @@ def induced_velocity(flow: Flow, thrust: Scalar) -> Array:
     float
         Induced velocity [m/s].
     """
-    tip_speed, disk_area = flow.rotation_speed * flow.radius, jnp.pi * flow.radius**2
-    return momentum_induced_velocity(thrust, flow.speed, tip_speed, flow.density, disk_area)
+    return momentum_induced_velocity(thrust, flow.case.state, flow.case.rotor.radius)
 
 
-def loads_at(
-    flow: Flow, n_blades: int, induced_velocity: Scalar, wake_ages: Array | np.ndarray = WAKE_AGES
-) -> LatticeLoads:
+def loads_at(flow: AxialFlow, induced_velocity: Scalar) -> LatticeLoads:
     """Loads of blade 1 in the wake that a given induced velocity transports.
 
     Parameters
     ----------
-    flow : Flow
-        Lattice and operating point.
-    n_blades : int
-        Number of equally spaced blades.
+    flow : AxialFlow
+        Case with its lattice.
     induced_velocity : float
         Induced velocity at the disk [m/s].
-    wake_ages : (n_nodes,) array
-        Azimuth of the wake nodes behind the blade [rad].
 
     Returns
     -------
     LatticeLoads
         Loads of blade 1.
     """
-    ages = jnp.asarray(wake_ages)
-    radius, omega = flow.radius, flow.rotation_speed
-    trailing = flow.lattice.rings.corner[-1]
-    wake = helical_wake(trailing, ages, n_blades, radius, omega, flow.speed, induced_velocity)
-    core = core_radius(ages, omega, _KINEMATIC_VISCOSITY, BOUND_CORE * radius)
-    return loads_with_wake(
-        flow.lattice,
-        wake,
-        core,
-        omega,
-        flow.speed,
-        induced_velocity,
-        flow.density,
-        flow.sections,
+    case, lattice = flow.case, flow.lattice
+    rotor, state = case.rotor, case.state
+    wake = helical_wake(lattice.rings.corner[-1], case.wake, rotor, state, induced_velocity)
+    core = core_radius(
+        jnp.asarray(case.wake.ages),
+        state.rotation_speed,
+        _KINEMATIC_VISCOSITY,
+        BOUND_CORE * rotor.radius,
     )
+    onset = axial_onset(lattice, state, induced_velocity)
+    return loads_with_wake(lattice, wake, core, onset, state.air, case.sections)
 
 
-@partial(compiled, static_argnames="n_blades")
-def solve_steady(
-    nodes: Array,
-    n_blades: int,
-    radius: Scalar,
-    rotation_speed: Scalar,
-    speed: Scalar,
-    density: Scalar,
-    sections: ViscousSections | None = None,
-    wake_ages: Array | np.ndarray = WAKE_AGES,
-    thrust_guess: Scalar = 0.0,
-) -> SteadySolution:
+@compiled
+def solve(case: RotorCase, thrust_guess: Scalar = 0.0) -> RotorLoads:
     """Solve the steady lattice with its own wake.
 
     Parameters
     ----------
-    nodes : (nc + 1, ns + 1, 3) array
-        Corner points of the lattice of blade 1 [m].
-    n_blades : int
-        Number of equally spaced blades.
-    radius, rotation_speed, speed, density : float
-        Tip radius [m], rotation speed, 0 gives zero loads [rad/s], axial flight speed, 0 is hover
-        [m/s], air density [kg/m^3].
-    sections : ViscousSections, optional
-        Polars that the lattice is held to; without any the flow is inviscid.
-    wake_ages : (n_nodes,) array
-        Azimuth of the wake nodes behind the blade [rad].
+    case : RotorCase
+        The rotor and how it turns and flies; a rotation speed of 0 gives zero loads.
     thrust_guess : float
         Thrust of all blades where it is nearly known, as after a trim: it saves half of the work
         and does not change the result. 0 is no guess [N].
 
     Returns
     -------
-    SteadySolution
-        Loads, exactly differentiable in every argument but `n_blades` and the guess.
+    RotorLoads
+        Loads, exactly differentiable in every argument but the guess.
     """
+    rotation_speed = case.state.rotation_speed
     turning = jnp.asarray(rotation_speed > 0.0)
     # Where nothing turns, the flow of 1 rad/s stands in, for the shapes.
-    flow = flow_at(
-        nodes, n_blades, radius, jnp.where(turning, rotation_speed, 1.0), speed, density, sections
-    )
-    ages, thrust_guess = jnp.asarray(wake_ages), jnp.asarray(thrust_guess, float)
+    flow = flow_at(case.turning(jnp.where(turning, rotation_speed, 1.0)))
+    n_blades = case.rotor.n_blades
 
     def evaluate(params: _Params, w: Array) -> LatticeLoads:
-        flow, ages, _ = params
-        return loads_at(flow, n_blades, w, ages)
+        return loads_at(params[0], w)
 
     def residual(params: _Params, w: Array, loads: LatticeLoads) -> Array:
         return induced_velocity(params[0], n_blades * loads.thrust) - w
 
-    def solve(params: _Params) -> tuple[Array, LatticeLoads, None]:
-        flow, _, thrust_guess = params
-        tip_speed = flow.rotation_speed * flow.radius
+    def search(params: _Params) -> tuple[Array, LatticeLoads, None]:
+        flow, thrust_guess = params
+        state = flow.case.state
+        tip_speed = state.rotation_speed * flow.case.rotor.radius
         known = induced_velocity(flow, thrust_guess)
 
         def trial(w: Array) -> tuple[Array, LatticeLoads]:
@@ -223,45 +170,99 @@ def solve_steady(
 
         w, loads = decreasing_root(
             trial,
-            -0.5 * flow.speed + 1.0e-6 * tip_speed,
+            -0.5 * state.speed + 1.0e-6 * tip_speed,
             tip_speed,
             jnp.where(thrust_guess == 0.0, _GUESS * tip_speed, known),
             _TOLERANCE,
         )
         return w, loads, None
 
-    w, loads, _ = at_root(solve, evaluate, residual, (flow, ages, thrust_guess))
-    return unless_still(turning, steady_solution(flow, n_blades, w, loads))
+    params = (flow, jnp.asarray(thrust_guess, float))
+    w, loads, _ = at_root(search, evaluate, residual, params)
+    return unless_still(turning, rotor_loads(flow, w, loads))
 
 
-def steady_solution(
-    flow: Flow, n_blades: int, induced_velocity_at_disk: Array, loads: LatticeLoads
-) -> SteadySolution:
-    """What the loads of a blade amount to.
+def evaluate(
+    flow: AxialFlow, thrust_required: Scalar, rotation_speed: Scalar
+) -> tuple[Array, LatticeLoads]:
+    """Thrust at a rotation speed, in the wake that the thrust required transports.
+
+    One lattice solution is enough for a trial of a trim: at the solution that wake is its own. At
+    any other rotation speed the thrust is wrong, but never on the wrong side of the thrust
+    required.
 
     Parameters
     ----------
-    flow : Flow
-        Lattice and operating point.
-    n_blades : int
-        Number of equally spaced blades.
+    flow : AxialFlow
+        Case with its lattice.
+    thrust_required : float
+        Thrust of all blades [N].
+    rotation_speed : float
+        Rotation speed of the trial [rad/s].
+
+    Returns
+    -------
+    thrust, loads : float, LatticeLoads
+        Thrust of all blades [N], loads of blade 1.
+    """
+    flow = flow.turning(rotation_speed)
+    loads = loads_at(flow, induced_velocity(flow, thrust_required))
+    return flow.case.rotor.n_blades * loads.thrust, loads
+
+
+def solution(
+    flow: AxialFlow, thrust_required: Scalar, rotation_speed: Scalar, loads: LatticeLoads
+) -> RotorLoads:
+    """Loads of the rotor from those of a blade that `evaluate` returned.
+
+    Parameters
+    ----------
+    flow : AxialFlow
+        Case with its lattice.
+    thrust_required : float
+        Thrust of all blades [N].
+    rotation_speed : float
+        Rotation speed at which the thrust is the one required [rad/s].
+    loads : LatticeLoads
+        Loads of blade 1 there.
+
+    Returns
+    -------
+    RotorLoads
+        Loads of all blades.
+    """
+    flow = flow.turning(rotation_speed)
+    return rotor_loads(flow, induced_velocity(flow, thrust_required), loads)
+
+
+def rotor_loads(
+    flow: AxialFlow, induced_velocity_at_disk: Array, loads: LatticeLoads
+) -> RotorLoads:
+    """Loads of the rotor from those of a blade.
+
+    Parameters
+    ----------
+    flow : AxialFlow
+        Case with its lattice.
     induced_velocity_at_disk : float
-        By which the wake was transported [m/s].
+        Induced velocity that transported the wake [m/s].
     loads : LatticeLoads
         Loads of blade 1 in that wake.
 
     Returns
     -------
-    SteadySolution
-        Of all blades; `converged` where momentum theory has the same induced velocity.
+    RotorLoads
+        Loads of all blades; `converged` where momentum theory has the same induced velocity.
     """
-    thrust, w = n_blades * loads.thrust, induced_velocity_at_disk
-    tip_speed, area = flow.rotation_speed * flow.radius, jnp.pi * flow.radius**2
+    rotor, state = flow.case.rotor, flow.case.state
+    n_blades, w = rotor.n_blades, induced_velocity_at_disk
+    thrust = n_blades * loads.thrust
+    tip_speed, area = state.rotation_speed * rotor.radius, jnp.pi * rotor.radius**2
     agrees = jnp.abs(induced_velocity(flow, thrust) - w) < 1.0e-6 * tip_speed
-    within_momentum_theory = thrust > -0.5 * area * flow.density * flow.speed**2
+    within_momentum_theory = thrust > -0.5 * area * state.air.density * state.speed**2
     settled = jnp.abs(loads.sections.residual).max() < SETTLED
     strip_thrust, strip_torque = strip_loads(loads)
-    return SteadySolution(
+    return RotorLoads(
         thrust=thrust,
         torque=n_blades * loads.torque,
         induced_velocity=w,
@@ -275,26 +276,26 @@ def steady_solution(
     )
 
 
-def unless_still(turning: Array, solution: SteadySolution) -> SteadySolution:
-    """Solution without any load where the propeller does not turn.
+def unless_still(turning: Array, loads: RotorLoads) -> RotorLoads:
+    """Zero loads where the propeller does not turn.
 
     Parameters
     ----------
     turning : bool
-        Whether it does.
-    solution : SteadySolution
-        Of the propeller that turns.
+        Whether the propeller turns.
+    loads : RotorLoads
+        Loads of the propeller that turns.
 
     Returns
     -------
-    SteadySolution
+    RotorLoads
         The same, or zeros, which count as converged.
     """
-    still = jax.tree.map(jnp.zeros_like, solution)
+    still = jax.tree.map(jnp.zeros_like, loads)
     still = dataclasses.replace(
         still,
-        point_loads=PointLoads(solution.point_loads.position, still.point_loads.force),
-        strips=solution.strips,
+        point_loads=PointLoads(loads.point_loads.position, still.point_loads.force),
+        strips=loads.strips,
         converged=jnp.asarray(True),
     )
-    return jax.tree.map(lambda moving, still: jnp.where(turning, moving, still), solution, still)
+    return jax.tree.map(lambda moving, still: jnp.where(turning, moving, still), loads, still)

@@ -11,6 +11,7 @@ import jax.numpy as jnp
 from jax import Array
 
 from propmdao.aerodynamics.lattice.rings import (
+    BOUND_CORE,
     Rings,
     blade_influence,
     bound_segments,
@@ -21,6 +22,7 @@ from propmdao.aerodynamics.lattice.rings import (
     wake_influence,
 )
 from propmdao.aerodynamics.lattice.strips import Strips, blade_strips
+from propmdao.aerodynamics.rotor_geometry import RotorGeometry
 from propmdao.aerodynamics.sections.laws import ViscousSections, section_laws
 from propmdao.aerodynamics.sections.recambering import (
     SectionStates,
@@ -28,7 +30,9 @@ from propmdao.aerodynamics.sections.recambering import (
     section_states,
     solve_recambering,
 )
+from propmdao.records.air import Air
 from propmdao.records.pytrees import Scalar, record
+from propmdao.records.states import RotorState
 
 
 @record
@@ -91,23 +95,67 @@ class LatticeLoads:
         return -(x * self.force[:, 1] - y * self.force[:, 0]).sum()
 
 
-def lattice_geometry(nodes: Array, n_blades: int, radius: Scalar) -> LatticeGeometry:
+@record
+class Onset:
+    """Air that meets the blade before its vortices act.
+
+    Attributes
+    ----------
+    velocity : (3, n_points) array
+        Velocity of the undisturbed air relative to the lattice's points [m/s].
+    turning : (ns,) array
+        Speed at which the air meets the sections by rotation [m/s].
+    axial_speed : scalar
+        Speed at which it meets the disk along the axis, induced velocity included [m/s].
+    """
+
+    velocity: Array
+    turning: Array
+    axial_speed: Scalar
+
+    @property
+    def relative_speed(self) -> Array:
+        """Resultant at the sections, (ns,) [m/s]."""
+        return jnp.hypot(self.turning, self.axial_speed)
+
+
+def axial_onset(lattice: LatticeGeometry, state: RotorState, induced_velocity: Scalar) -> Onset:
+    """Air that meets the blade of a rotor in axial flight: -Omega x r - V.
+
+    Parameters
+    ----------
+    lattice : LatticeGeometry
+        Lattice of blade 1.
+    state : RotorState
+        How the rotor turns and flies.
+    induced_velocity : float
+        Induced velocity at the disk [m/s].
+
+    Returns
+    -------
+    Onset
+        The air, in the turning and climbing frame of the blade.
+    """
+    omega, speed = state.rotation_speed, state.speed
+    x, y = lattice.points[:, 0], lattice.points[:, 1]
+    velocity = jnp.stack([omega * y, -omega * x, jnp.full_like(x, -speed)])
+    return Onset(velocity, omega * lattice.strips.radius, speed + induced_velocity)
+
+
+def lattice_geometry(rotor: RotorGeometry) -> LatticeGeometry:
     """Rings, points and the part of the influence that no wake changes.
 
     Parameters
     ----------
-    nodes : (nc + 1, ns + 1, 3) array
-        Corner points of the lattice of blade 1 [m].
-    n_blades : int
-        Number of equally spaced blades.
-    radius : float
-        Tip radius [m].
+    rotor : RotorGeometry
+        Blade and number of blades.
 
     Returns
     -------
     LatticeGeometry
         The lattice.
     """
+    nodes, radius = rotor.nodes, rotor.radius
     rings = vortex_rings(nodes)
     (root, tip), (ahead, behind) = bound_segments(rings), chordwise_segments(rings)
     f = jnp.asarray(strip_middle(nodes.shape[1] - 1))[None, :, None]
@@ -117,7 +165,7 @@ def lattice_geometry(nodes: Array, n_blades: int, radius: Scalar) -> LatticeGeom
         [rings.collocation, on_bound.reshape(-1, 3), on_chordwise.reshape(-1, 3)]
     )
     segment = jnp.concatenate([(tip - root).reshape(-1, 3), (behind - ahead).reshape(-1, 3)])
-    influence = blade_influence(points, rings, n_blades, radius)
+    influence = blade_influence(points, rings, rotor.azimuths, BOUND_CORE * radius)
     return LatticeGeometry(rings, blade_strips(nodes, rings, radius), points, segment, influence)
 
 
@@ -125,10 +173,8 @@ def loads_with_wake(
     lattice: LatticeGeometry,
     wake_nodes: Array,
     wake_core_radius: Array,
-    rotation_speed: Scalar,
-    speed: Scalar,
-    induced_velocity: Scalar,
-    density: Scalar,
+    onset: Onset,
+    air: Air,
     sections: ViscousSections | None,
 ) -> LatticeLoads:
     """Solve for the circulation in a given wake and take the forces.
@@ -141,9 +187,10 @@ def loads_with_wake(
         Trailing filaments of all blades [m].
     wake_core_radius : (n_nodes - 1,) array
         Core radius along the filaments [m].
-    rotation_speed, speed, induced_velocity, density : float
-        Rotation speed [rad/s], axial flight speed, induced velocity at the disk [m/s], air density
-        [kg/m^3].
+    onset : Onset
+        Air that meets the blade before its vortices act.
+    air : Air
+        The undisturbed air.
     sections : ViscousSections or None
         Polars that the lattice is held to; None for inviscid flow.
 
@@ -158,35 +205,31 @@ def loads_with_wake(
     by_wake = wake_influence(points, wake_nodes, wake_core_radius)
     influence = lattice.influence.at[:, -1].add(by_wake).reshape(3, n_panels, -1)
 
-    # Velocity of the air relative to the turning and climbing blade: -Omega x r - V.
-    x, y = points[:, 0], points[:, 1]
-    apparent = jnp.stack([rotation_speed * y, -rotation_speed * x, jnp.full_like(x, -speed)])
     downwash = (influence[:, :, :n_panels] * normal.T[:, None, :]).sum(axis=0)
-    onset = (apparent[:, :n_panels] * normal.T).sum(axis=0)
+    normalwash = (onset.velocity[:, :n_panels] * normal.T).sum(axis=0)
 
-    turning, axial_speed = rotation_speed * strips.radius, speed + induced_velocity
-    relative_speed = jnp.hypot(turning, axial_speed)
+    relative_speed = onset.relative_speed
     recambered = jnp.tile(jnp.diag(relative_speed), (nc, 1))
-    unit = jnp.linalg.solve(downwash.T, -jnp.column_stack([onset, recambered]))
+    unit = jnp.linalg.solve(downwash.T, -jnp.column_stack([normalwash, recambered]))
     circulation, response = unit[:, 0], unit[:, 1:]
     # The last rings carry the circulation of their whole strip.
     strip_flow = StripFlow(strips, relative_speed, circulation[-ns:], response[-ns:])
     recambering, laws = jnp.zeros(ns), None
     if sections is not None:
-        laws = section_laws(strips, turning, axial_speed, density, sections)
+        laws = section_laws(strips, onset.turning, onset.axial_speed, air, sections)
         recambering = solve_recambering(strip_flow, laws)
         circulation = circulation + response @ recambering
     states = section_states(strip_flow, recambering, laws)
 
     induced = jnp.tensordot(circulation, influence[:, :, n_panels:], axes=(0, 1))
-    velocity = (apparent[:, n_panels:] + induced).T
+    velocity = (onset.velocity[:, n_panels:] + induced).T
     circulation = circulation.reshape(nc, ns)
     strength = jnp.concatenate([g.ravel() for g in segment_circulation(circulation)])
-    lift = density * strength[:, None] * jnp.cross(velocity, lattice.segment)
+    lift = air.density * strength[:, None] * jnp.cross(velocity, lattice.segment)
     return LatticeLoads(
         circulation,
         jnp.concatenate([points[n_panels:], strips.quarter_chord]),
-        jnp.concatenate([lift, _profile_drag(strips, states, density)]),
+        jnp.concatenate([lift, _profile_drag(strips, states, air.density)]),
         states,
     )
 

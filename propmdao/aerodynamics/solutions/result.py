@@ -16,7 +16,7 @@ SETTLED = 1.0e-6  # difference of lift coefficients of lattice and polars that c
 
 
 @record
-class SteadySolution:
+class RotorLoads:
     """Loads of the propeller in steady axial flow.
 
     Attributes
@@ -51,12 +51,12 @@ class SteadySolution:
     converged: Array
 
 
-def failure(solution: SteadySolution) -> str | None:
+def failure(solution: RotorLoads) -> str | None:
     """Say why a solution did not converge; call it outside ``jit``.
 
     Parameters
     ----------
-    solution : SteadySolution
+    solution : RotorLoads
         The solution.
 
     Returns

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import partial
-from typing import Any, TypeVar
+from typing import Any, NamedTuple, TypeVar
 
 import jax
 import jax.numpy as jnp
@@ -46,30 +46,63 @@ def decreasing_root(
         `at_root` makes them differentiable.
     """
 
-    def unfinished(state: Any) -> Array:
-        return (state[0] < _MAX_EVALUATIONS) & ~state[-1]
+    def unfinished(state: _Search) -> Array:
+        return (state.n_trials < _MAX_EVALUATIONS) & ~state.done
 
-    def step(state: Any) -> Any:
-        count, lo, hi, x, x_before, f_before, _, last, _ = state
+    def step(state: _Search) -> _Search:
+        x = state.trial
         f, results = residual(x)
-        lo, hi = jnp.where(f > 0.0, x, lo), jnp.where(f > 0.0, hi, x)
+        lo, hi = jnp.where(f > 0.0, x, state.low), jnp.where(f > 0.0, state.high, x)
         # The first step has no secant: bisecting would throw the guess away, so move as if the
         # slope were -1, which is that of x = g(x) with a constant g.
-        slope = jnp.where(count == 0, -1.0, (f - f_before) / (x - x_before))
+        secant = (f - state.last_residual) / (x - state.last_trial)
+        slope = jnp.where(state.n_trials == 0, -1.0, secant)
         trial = x - f / slope
         inside = (trial > lo) & (trial < hi)
         following = jnp.where(inside | (f == 0.0), trial, 0.5 * (lo + hi))
-        close = jnp.abs((following - x) * (x - x_before)) <= tolerance * following**2
+        close = jnp.abs((following - x) * (x - state.last_trial)) <= tolerance * following**2
         close = close | (jnp.abs(f) <= tolerance * jnp.abs(following))
-        # Where the next trial will do, it is evaluated once more, for the results there.
-        following = jnp.where(last, x, following)
-        return count + 1, lo, hi, following, x, f, results, close, last
+        return _Search(
+            n_trials=state.n_trials + 1,
+            low=lo,
+            high=hi,
+            # Where the next trial will do, it is evaluated once more, for the results there.
+            trial=jnp.where(state.close, x, following),
+            last_trial=x,
+            last_residual=f,
+            results=results,
+            close=close,
+            done=state.close,
+        )
 
     none, no = jnp.asarray(jnp.inf), jnp.asarray(False)
-    ends = (jnp.asarray(value, float) for value in (low, high, guess))
-    start: Any = (0, *ends, none, none, empty(residual, guess)[1], no, no)
-    state = jax.lax.while_loop(unfinished, step, start)
-    return state[3], state[6]
+    start = _Search(
+        n_trials=0,
+        low=jnp.asarray(low, float),
+        high=jnp.asarray(high, float),
+        trial=jnp.asarray(guess, float),
+        last_trial=none,
+        last_residual=none,
+        results=empty(residual, guess)[1],
+        close=no,
+        done=no,
+    )
+    end = jax.lax.while_loop(unfinished, step, start)
+    return end.trial, end.results
+
+
+class _Search(NamedTuple):
+    """State of `decreasing_root`."""
+
+    n_trials: Array | int
+    low: Array
+    high: Array
+    trial: Array
+    last_trial: Array
+    last_residual: Array
+    results: Any
+    close: Array  # whether the next trial will do
+    done: Array
 
 
 def empty(function: Callable[..., Results], *arguments: Any) -> Results:

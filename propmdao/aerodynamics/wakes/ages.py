@@ -4,27 +4,26 @@ from __future__ import annotations
 
 import numpy as np
 
+from propmdao.records.wake_law import WakeGrid
 
-def wake_azimuths(turns: float, first_step: float, growth: float, last_step: float) -> np.ndarray:
+
+def wake_azimuths(grid: WakeGrid) -> np.ndarray:
     """Azimuth behind the blade of the wake nodes, finely spaced near the blade.
 
     Parameters
     ----------
-    turns : float
-        Length of the wake in revolutions.
-    first_step, last_step : float
-        Smallest (at the blade) and largest azimuth step [rad].
-    growth : float
-        Ratio of one step to the one before.
+    grid : WakeGrid
+        Length of the wake and its steps.
 
     Returns
     -------
     (n_nodes,) array
         Ages from 0 to 2 pi turns [rad].
     """
+    step, last_step = np.radians(grid.first_step_deg), np.radians(grid.last_step_deg)
+    length = 2.0 * np.pi * grid.turns
     ages = [0.0]
-    step = first_step
-    while ages[-1] < 2.0 * np.pi * turns:
+    while ages[-1] < length:
         ages.append(ages[-1] + step)
-        step = min(step * growth, last_step)
-    return np.array(ages) * (2.0 * np.pi * turns / ages[-1])
+        step = min(step * grid.growth, last_step)
+    return np.array(ages) * (length / ages[-1])

@@ -12,34 +12,65 @@ slowly, V + 0.7 w / B, and then at the mean of both sides of the edge, V + w. Hi
 has a first speed that falls with the number of blades (as CT over solidity) and a second one near w
 for twisted blades.
 
-The numbers 0.7, 1 and 2 are those at which sheets in hover move as they themselves and the blades
-induce: `studies/wake_transport.py` lets the two parts drift until they do, with two to four
-blades, in hover and in flight, where V counts for more (docs/verification.md). Limits: w is
-uniform over the disk; swirl and the roll-up itself are left out.
+The numbers 0.7, 1 and 2, the defaults of `WakeLaw`, are those at which sheets in hover move as they
+themselves and the blades induce: `studies/wake_transport.py` lets the two parts drift until they
+do, with two to four blades, in hover and in flight, where V counts for more (docs/verification.md).
+Limits: w is uniform over the disk; swirl and the roll-up itself are left out.
 """
 
 from __future__ import annotations
 
 import jax
 import jax.numpy as jnp
+import numpy as np
 from jax import Array
 
-from propmdao.records.pytrees import Scalar
+from propmdao.aerodynamics.rotor_geometry import RotorGeometry
+from propmdao.aerodynamics.wakes.ages import wake_azimuths
+from propmdao.records.pytrees import Scalar, record
+from propmdao.records.states import RotorState
+from propmdao.records.wake_law import WakeGrid, WakeLaw
 
-# Speed of the sheet relative to the free stream, in induced velocities w: of its outer part before
-# the next blade has passed, times the number of blades, and after; of its inner part.
-_BEFORE_PASSAGE, _AFTER_PASSAGE, _INSIDE = 0.7, 1.0, 2.0
-_PASSAGE_WIDTH = 0.2  # of the change between the two, in blade passages
-_INNER_EDGE = 0.7  # r/R inward of which the sheet is carried by the air inside
+
+@record
+class WakeTransport:
+    """How the wake moves, and the ages that its nodes have reached.
+
+    Attributes
+    ----------
+    law : WakeLaw
+        Speed of the wake's parts.
+    ages : (n_nodes,) array
+        Azimuths behind the blade, from 0 [rad]; `wakes.ages.wake_azimuths` spaces them.
+    """
+
+    law: WakeLaw
+    ages: Array | np.ndarray
+
+
+def wake_transport(law: WakeLaw = WakeLaw(), grid: WakeGrid = WakeGrid()) -> WakeTransport:  # noqa: B008 - frozen
+    """Make the transport of a wake from its law and its grid.
+
+    Parameters
+    ----------
+    law : WakeLaw
+        Speed of the wake's parts.
+    grid : WakeGrid
+        Length of the wake and the steps of its nodes.
+
+    Returns
+    -------
+    WakeTransport
+        For the solutions.
+    """
+    return WakeTransport(law, wake_azimuths(grid))
 
 
 def helical_wake(
     trailing_nodes: Array,
-    ages: Array,
-    n_blades: int,
-    radius: Scalar,
-    rotation_speed: Scalar,
-    speed: Scalar,
+    transport: WakeTransport,
+    rotor: RotorGeometry,
+    state: RotorState,
     induced_velocity: Scalar,
 ) -> Array:
     """Trailing filaments of all blades.
@@ -48,48 +79,55 @@ def helical_wake(
     ----------
     trailing_nodes : (n_filaments, 3) array
         Where the filaments leave blade 1 [m].
-    ages : (n_nodes,) array
-        Azimuth behind the blade, from 0 [rad].
-    n_blades : int
-        Number of equally spaced blades.
-    radius, rotation_speed, speed, induced_velocity : float
-        Tip radius [m], rotation speed [rad/s], flight speed [m/s], induced velocity at
-        the disk [m/s].
+    transport : WakeTransport
+        How the wake moves, and where its nodes are.
+    rotor : RotorGeometry
+        The rotor that it leaves.
+    state : RotorState
+        How the rotor turns and flies.
+    induced_velocity : float
+        Induced velocity at the disk [m/s].
 
     Returns
     -------
     (n_filaments, n_blades, n_nodes, 3) array
         Nodes of the filaments, blade by blade [m].
     """
-    time, w = ages / rotation_speed, induced_velocity
-    passage_time = 2.0 * jnp.pi / (n_blades * rotation_speed)
-    outer = speed * time + w * passage_time * _outer_drift(time / passage_time, n_blades)
-    inner = (speed + _INSIDE * w) * time
+    law, ages = transport.law, jnp.asarray(transport.ages)
+    speed, w, radius = state.speed, induced_velocity, rotor.radius
+    time = ages / state.rotation_speed
+    passage_time = 2.0 * jnp.pi / (rotor.n_blades * state.rotation_speed)
+    drift = _outer_drift(law, time / passage_time, rotor.n_blades)
+    outer = speed * time + w * passage_time * drift
+    inner = (speed + law.inside * w) * time
 
     # Continuity, with the velocity on the axis of the semi-infinite vortex cylinder,
     # V + w (1 + s / sqrt(1 + s^2)) (McCormick 1967, eq. 4-48), s in radii downstream.
     s = (speed + 1.5 * w) * time / radius
     contraction = jnp.sqrt((speed + w) / (speed + w + w * s / jnp.sqrt(1.0 + s * s)))
 
-    outward = outer_part(jnp.hypot(trailing_nodes[:, 0], trailing_nodes[:, 1]) / radius)[:, None]
+    r_over_R = jnp.hypot(trailing_nodes[:, 0], trailing_nodes[:, 1]) / radius
+    outward = outer_part(r_over_R, law)[:, None]
     axial = (1.0 - outward) * inner + outward * outer
-    return helices(trailing_nodes, ages, n_blades, axial, contraction)
+    return helices(trailing_nodes, ages, rotor.n_blades, axial, contraction)
 
 
-def outer_part(r_over_R: Array) -> Array:
-    """How much of the sheet shed at a radius goes with the tip vortex.
+def outer_part(r_over_R: Array, law: WakeLaw) -> Array:
+    """Share of the sheet shed at a radius that goes with the tip vortex.
 
     Parameters
     ----------
     r_over_R : (n_filaments,) array
         Where the filaments leave the blade.
+    law : WakeLaw
+        Where the outer part begins.
 
     Returns
     -------
     (n_filaments,) array
         From 0, carried by the air inside, to 1 at the tip; smooth.
     """
-    x = jnp.clip((r_over_R - _INNER_EDGE) / (1.0 - _INNER_EDGE), 0.0, 1.0)
+    x = jnp.clip((r_over_R - law.inner_edge) / (1.0 - law.inner_edge), 0.0, 1.0)
     return x * x * (3.0 - 2.0 * x)
 
 
@@ -100,12 +138,16 @@ def helices(
 
     Parameters
     ----------
-    trailing_nodes, ages, n_blades
-        As for `helical_wake`.
+    trailing_nodes : (n_filaments, 3) array
+        Where the filaments leave blade 1 [m].
+    ages : (n_nodes,) array
+        Azimuths behind the blade [rad].
+    n_blades : int
+        Number of equally spaced blades.
     axial : (n_filaments, n_nodes) array
-        Way downstream [m].
+        Distance that the nodes have moved downstream [m].
     contraction : (n_nodes,) array
-        Radius over that at the blade.
+        Radius of the nodes over that at the blade.
 
     Returns
     -------
@@ -121,11 +163,10 @@ def helices(
     return jnp.stack([r * jnp.cos(psi), r * jnp.sin(psi), jnp.broadcast_to(z, psi.shape)], axis=-1)
 
 
-def _outer_drift(passages: Array, n_blades: int) -> Array:
-    """Way of the outer sheet relative to the free stream, in w times the time of a passage."""
+def _outer_drift(law: WakeLaw, passages: Array, n_blades: int) -> Array:
+    """Distance of the outer sheet from the free stream's, in w times the time of a passage."""
     # log(1 + exp(x)): two straight lines with a rounded corner where the next blade passes.
-    later = _PASSAGE_WIDTH * (
-        jax.nn.softplus((passages - 1.0) / _PASSAGE_WIDTH) - jax.nn.softplus(-1.0 / _PASSAGE_WIDTH)
-    )
-    before = _BEFORE_PASSAGE / n_blades
-    return before * passages + (_AFTER_PASSAGE - before) * later
+    width = law.passage_width
+    later = width * (jax.nn.softplus((passages - 1.0) / width) - jax.nn.softplus(-1.0 / width))
+    before = law.before_passage / n_blades
+    return before * passages + (law.after_passage - before) * later

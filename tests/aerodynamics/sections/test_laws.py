@@ -4,13 +4,14 @@ import jax.numpy as jnp
 import numpy as np
 import pytest
 
-from propmdao.aerodynamics.lattice.strips import strip_radii
+from propmdao.aerodynamics.lattice.rings import vortex_rings
+from propmdao.aerodynamics.lattice.strips import blade_strips, strip_radii
 from propmdao.aerodynamics.sections.laws import section_laws, viscous_sections
 from propmdao.aerodynamics.sections.polars.propeller_polars import polars_for
-from propmdao.aerodynamics.solutions.axial import solve_steady
 from propmdao.formats.propellers import load_propeller
 from propmdao.geometry.blade import Blade, span_interpolation
 from propmdao.geometry.lattice import lattice_nodes, lattice_span
+from propmdao.records.air import Air
 
 NC, NS, OMEGA = 4, 10, 440.0
 
@@ -20,9 +21,10 @@ def laws(name, delay):
     stations, blade = propeller.r_over_R, Blade.from_propeller(propeller)
     nodes = lattice_nodes(blade, span_interpolation(stations, lattice_span(stations[0], NS)), NC)
     at = span_interpolation(stations, strip_radii(stations[0], NS))
-    sections = viscous_sections(polars_for(propeller), blade, at, 340.0, delay)
-    strips = solve_steady(nodes, 2, 0.5 * propeller.diameter, OMEGA, 5.0, 1.2).strips
-    return section_laws(strips, OMEGA * strips.radius, 8.0, 1.2, sections)
+    sections = viscous_sections(polars_for(propeller), blade, at, delay)
+    strips = blade_strips(nodes, vortex_rings(nodes), 0.5 * propeller.diameter)
+    air = Air(density=1.2, sound_speed=340.0)
+    return section_laws(strips, OMEGA * strips.radius, 8.0, air, sections)
 
 
 @pytest.fixture(scope="module", params=["apcsf_11x4.7", "apce_10x7"])

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from propmdao.aerodynamics.lattice.strips import strip_radii
+from propmdao.aerodynamics.rotor_geometry import RotorGeometry
 from propmdao.aerodynamics.sections.laws import ViscousSections
 from propmdao.aerodynamics.sections.polars.family import blade_tables
 from propmdao.aerodynamics.sections.polars.propeller_polars import polars_for
@@ -16,14 +17,19 @@ from propmdao.aerodynamics.sections.polars.table import (
     curve_coefficients,
     section_curves,
 )
-from propmdao.aerodynamics.solutions.axial import solve_steady
+from propmdao.aerodynamics.solutions import axial
+from propmdao.aerodynamics.solutions.case import RotorCase
 from propmdao.aerodynamics.solutions.result import failure
 from propmdao.formats.propellers import load_propeller
 from propmdao.geometry.blade import Blade, span_interpolation
 from propmdao.geometry.lattice import lattice_nodes, lattice_span
+from propmdao.records.air import Air
+from propmdao.records.states import RotorState
+from propmdao.records.units import RAD_PER_S
 
-RPM = np.pi / 30.0
 NC, NS = 4, 10
+AIR = Air(density=1.2, sound_speed=340.0, dynamic_viscosity=1.8e-5)
+INCOMPRESSIBLE = dataclasses.replace(AIR, sound_speed=1e9)
 
 
 class Rotor:
@@ -39,11 +45,13 @@ class Rotor:
         at = span_interpolation(stations, strip_radii(stations[0], NS))
         self.table = blade_tables(polars_for(propeller), blade, at)
 
+    def case(self, rotation_speed, speed, sections=None, air=AIR):
+        state = RotorState(rotation_speed, float(speed), air)
+        return RotorCase(RotorGeometry(self.nodes, self.radius, 2), state, sections)
+
     def solve(self, rpm, speed, table=None, delay=1.0, **others):
-        sections = ViscousSections(table or self.table, 1.8e-5, 340.0, delay)
-        return solve_steady(
-            self.nodes, 2, self.radius, rpm * RPM, float(speed), 1.2, sections, **others
-        )
+        sections = ViscousSections(table or self.table, delay)
+        return axial.solve(self.case(rpm * RAD_PER_S, speed, sections), **others)
 
 
 @pytest.fixture(scope="module")
@@ -58,7 +66,7 @@ def thin_electric():
 
 def thin_airfoils(rotor, drag=1e-12):
     """Polars of thin-airfoil theory within +-40 deg, from the angles that the lattice has."""
-    inviscid = solve_steady(rotor.nodes, 2, rotor.radius, 400.0, 8.0, 1.2)
+    inviscid = axial.solve(rotor.case(400.0, 8.0))
     alpha = rotor.table.alpha
     cl = 2.0 * jnp.pi * (alpha - inviscid.strips.zero_lift_angle[:, None])
     values = jnp.stack([cl, jnp.full_like(cl, np.log(drag)), 0.0 * cl], axis=1)[:, :, None, :]
@@ -68,21 +76,20 @@ def thin_airfoils(rotor, drag=1e-12):
 @pytest.mark.parametrize("speed", [0.0, 8.0])
 def test_polars_of_thin_airfoil_theory_are_the_inviscid_lattice(slow_flyer, speed):
     # Incompressible, and without the delay of a stall that there is not.
-    sections = ViscousSections(thin_airfoils(slow_flyer), 1.8e-5, 1e9, 0.0)
-    air = (400.0, speed, 1.2)
-    held = solve_steady(slow_flyer.nodes, 2, slow_flyer.radius, *air, sections)
-    free = solve_steady(slow_flyer.nodes, 2, slow_flyer.radius, *air)
+    sections = ViscousSections(thin_airfoils(slow_flyer), 0.0)
+    held = axial.solve(slow_flyer.case(400.0, speed, sections, INCOMPRESSIBLE))
+    free = axial.solve(slow_flyer.case(400.0, speed))
     np.testing.assert_allclose(held.circulation, free.circulation, rtol=1e-9)
     assert float(held.torque) == pytest.approx(float(free.torque), rel=1e-9)
 
 
 def test_profile_drag_of_thin_airfoils_is_the_integral_over_the_blade(slow_flyer):
     cd = 0.02
-    sections = ViscousSections(thin_airfoils(slow_flyer, cd), 1.8e-5, 1e9, 0.0)
-    free = solve_steady(slow_flyer.nodes, 2, slow_flyer.radius, 400.0, 8.0, 1.2)
-    held = solve_steady(slow_flyer.nodes, 2, slow_flyer.radius, 400.0, 8.0, 1.2, sections)
-    s, axial = held.strips, 8.0 + float(held.induced_velocity)
-    w, inflow = np.hypot(400.0 * s.radius, axial), np.arctan2(axial, 400.0 * s.radius)
+    sections = ViscousSections(thin_airfoils(slow_flyer, cd), 0.0)
+    free = axial.solve(slow_flyer.case(400.0, 8.0))
+    held = axial.solve(slow_flyer.case(400.0, 8.0, sections, INCOMPRESSIBLE))
+    s, climb = held.strips, 8.0 + float(held.induced_velocity)
+    w, inflow = np.hypot(400.0 * s.radius, climb), np.arctan2(climb, 400.0 * s.radius)
     drag = 0.5 * 1.2 * w**2 * s.chord * s.width * cd
     torque = 2.0 * float((drag * np.cos(inflow) * s.radius).sum())
     assert float(held.torque - free.torque) == pytest.approx(torque, rel=0.03)
@@ -159,15 +166,13 @@ def outputs(slow_flyer):
     def outputs(step, speed):
         values = slow_flyer.table.values + step * change
         table = dataclasses.replace(slow_flyer.table, values=values)
-        solution = solve_steady(
-            slow_flyer.nodes + step * direction,
-            2,
-            slow_flyer.radius,
-            420.0 + step,
-            speed + 0.1 * step,
-            1.2 + 0.01 * step,
-            ViscousSections(table, 1.8e-5, 340.0 + step, 1.0),
+        air = dataclasses.replace(AIR, density=1.2 + 0.01 * step, sound_speed=340.0 + step)
+        case = RotorCase(
+            RotorGeometry(slow_flyer.nodes + step * direction, slow_flyer.radius, 2),
+            RotorState(420.0 + step, speed + 0.1 * step, air),
+            ViscousSections(table, 1.0),
         )
+        solution = axial.solve(case)
         return jnp.stack([solution.thrust, solution.torque, solution.induced_velocity])
 
     return outputs

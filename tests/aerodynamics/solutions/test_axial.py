@@ -6,18 +6,18 @@ import numpy as np
 import pytest
 
 from propmdao.aerodynamics.coefficients import coefficients
-from propmdao.aerodynamics.solutions.axial import solve_steady
+from propmdao.aerodynamics.solutions import axial
 
 OMEGA = 440.0
 
 
-def solve(rotor, omega=OMEGA, speed=8.0, density=1.225, n_blades=2, nodes=None):
-    nodes = rotor.nodes() if nodes is None else nodes
-    return solve_steady(nodes, n_blades, rotor.radius, float(omega), float(speed), density)
+def solve(rotor, omega=OMEGA, speed=8.0, density=1.225, **others):
+    return axial.solve(rotor.case(float(omega), float(speed), density, **others))
 
 
 def numbers(rotor, solution, omega, speed, density=1.225):
-    return coefficients(solution.thrust, solution.torque, omega, speed, density, 2 * rotor.radius)
+    state = rotor.case(omega, speed, density).state
+    return coefficients(solution.thrust, solution.torque, state, 2 * rotor.radius)
 
 
 def test_zero_rotation_speed_gives_zero_loads_and_finite_derivatives(slow_flyer):
@@ -26,7 +26,7 @@ def test_zero_rotation_speed_gives_zero_loads_and_finite_derivatives(slow_flyer)
     assert not np.any(solution.point_loads.force) and not np.any(solution.circulation)
     assert solution.converged
     nodes = slow_flyer.nodes()
-    slope = jax.grad(lambda v: solve_steady(nodes, 2, 0.1397, 0.0, v, 1.2).thrust)(8.0)
+    slope = jax.grad(lambda v: axial.solve(slow_flyer.case(0.0, v, 1.2, nodes=nodes)).thrust)(8.0)
     assert slope == 0.0
 
 
@@ -98,8 +98,9 @@ def test_derivatives_are_those_of_the_converged_solution(slow_flyer, speed):
     direction = jnp.asarray(np.random.default_rng(3).normal(size=nodes.shape)) * 1e-4
 
     def outputs(step):
-        solution = solve_steady(
-            nodes + step * direction, 2, 0.1397, OMEGA + step, speed + 0.3 * step, 1.2 + 0.01 * step
+        moved = nodes + step * direction
+        solution = axial.solve(
+            slow_flyer.case(OMEGA + step, speed + 0.3 * step, 1.2 + 0.01 * step, nodes=moved)
         )
         return jnp.stack([solution.thrust, solution.torque, solution.induced_velocity])
 
@@ -114,8 +115,7 @@ def test_derivatives_are_those_of_the_converged_solution(slow_flyer, speed):
 
 @pytest.mark.parametrize("guess", [-0.2, 0.1, 1.3, 30.0])
 def test_the_guess_changes_nothing_but_the_work(slow_flyer, guess):
-    nodes = slow_flyer.nodes()
-    air = (OMEGA, 8.0, 1.225)
-    plain = solve_steady(nodes, 2, slow_flyer.radius, *air)
-    guessed = solve_steady(nodes, 2, slow_flyer.radius, *air, thrust_guess=guess)
+    case = slow_flyer.case(OMEGA)
+    plain = axial.solve(case)
+    guessed = axial.solve(case, thrust_guess=guess)
     assert float(guessed.thrust) == pytest.approx(float(plain.thrust), rel=1e-8)

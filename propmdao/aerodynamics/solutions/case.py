@@ -1,0 +1,37 @@
+"""What a solution is of: a rotor, how it turns and flies, its sections and its wake."""
+
+from __future__ import annotations
+
+import dataclasses
+
+from propmdao.aerodynamics.rotor_geometry import RotorGeometry
+from propmdao.aerodynamics.sections.laws import ViscousSections
+from propmdao.aerodynamics.wakes.helical import WakeTransport, wake_transport
+from propmdao.records.pytrees import Scalar, record
+from propmdao.records.states import RotorState
+
+
+@record
+class RotorCase:
+    """A rotor to be solved.
+
+    Attributes
+    ----------
+    rotor : RotorGeometry
+        Blade and number of blades.
+    state : RotorState
+        How the rotor turns and flies.
+    sections : ViscousSections or None
+        Polars that the lattice is held to; None for inviscid flow.
+    wake : WakeTransport
+        How the wake moves, and where its nodes are.
+    """
+
+    rotor: RotorGeometry
+    state: RotorState
+    sections: ViscousSections | None = None
+    wake: WakeTransport = dataclasses.field(default_factory=wake_transport)
+
+    def turning(self, rotation_speed: Scalar) -> RotorCase:
+        """The same case at another rotation speed [rad/s]."""
+        return dataclasses.replace(self, state=self.state.turning(rotation_speed))

@@ -1,0 +1,155 @@
+"""What is asked of an analysis, in its records or by single values."""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Mapping
+from typing import Any, TypedDict
+
+import numpy.typing as npt
+
+from propmdao.propeller.changes import Change
+from propmdao.records.air import Air
+from propmdao.records.fidelity import Fidelity
+from propmdao.records.listening import Listening, Surroundings
+from propmdao.records.models import LoadModel, Model, NoiseModel, SelfNoiseModel, Trip
+from propmdao.records.plain import from_plain, to_plain
+from propmdao.records.quantities import ASKED
+from propmdao.records.states import OperatingPoint
+
+
+class Asked(TypedDict, total=False):
+    """Single values in place of records; the table of quantities says what they mean."""
+
+    rpm: float | None
+    thrust: float | None
+    speed: float
+    density: float
+    sound_speed: float
+    dynamic_viscosity: float
+    temperature: float
+    pressure: float
+    relative_humidity: float
+    twist_offset_deg: float
+    chord_factor: float
+    diameter: float | None
+    n_blades: int | None
+    viscous: bool
+    stall_delay: bool
+    broadband: bool
+    trip: Trip
+    fidelity: Fidelity
+    observers: npt.ArrayLike
+    surroundings: Surroundings
+
+
+@dataclasses.dataclass(frozen=True)
+class Request:
+    """What is asked of an analysis, beside the propeller.
+
+    Attributes
+    ----------
+    point : OperatingPoint
+        Rotation speed or thrust, flight speed, air.
+    change : Change
+        What is changed of the described propeller.
+    model : Model
+        How loads and noise are computed.
+    listening : Listening
+        Who listens, and what is around.
+    """
+
+    point: OperatingPoint
+    change: Change = Change()
+    model: Model = dataclasses.field(default_factory=Model)
+    listening: Listening = dataclasses.field(default_factory=Listening)
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return it as plain numbers, the part of ``propmdao analyze --json`` that was asked."""
+        plain = to_plain(self)
+        assert isinstance(plain, dict)
+        return plain
+
+    @classmethod
+    def from_dict(cls, values: Mapping[str, Any]) -> Request:
+        """Make the request that a JSON result answers.
+
+        Parameters
+        ----------
+        values : dict
+            With the keys of `to_dict`; others are left alone.
+
+        Returns
+        -------
+        Request
+            The same as it was.
+        """
+        names = [field.name for field in dataclasses.fields(cls)]
+        return from_plain(cls, {name: values[name] for name in names if name in values})
+
+    @classmethod
+    def of(cls, given: Mapping[str, Any] | None = None, **values: Any) -> Request:
+        """Make a request of single values.
+
+        Parameters
+        ----------
+        given : mapping of str to record, optional
+            Whole records by the attribute's name; None counts as not given.
+        **values
+            Single values, see `Asked`. A record that is given takes no single values.
+
+        Returns
+        -------
+        Request
+            Defaults for all the rest.
+
+        Raises
+        ------
+        TypeError
+            For a value that there is not, as Python itself says of a function's arguments.
+        ValueError
+            If a value contradicts a record or another value, or is out of range.
+        """
+        records = {name: record for name, record in (given or {}).items() if record is not None}
+        places: dict[str, dict[str, Any]] = {}
+        for name, value in values.items():
+            if name not in _PLACES:
+                raise TypeError(
+                    f"'{name}' is nothing that can be asked; there are {', '.join(_PLACES)}"
+                )
+            place = _PLACES[name]
+            record = place.split(".")[0]
+            if record in records:
+                raise ValueError(f"{name} is given, and {record}, which holds it: give one of them")
+            places.setdefault(place, {})[name] = value
+        made: dict[str, Any] = {
+            "point": lambda: OperatingPoint(
+                **places.get("point", {}), air=Air(**places.get("point.air", {}))
+            ),
+            "change": lambda: Change(**places.get("change", {})),
+            "model": lambda: _model(places),
+            "listening": lambda: Listening(**places.get("listening", {})),
+        }
+        return cls(**{name: records.get(name) or make() for name, make in made.items()})
+
+
+#: Record that holds each value, as a dotted path.
+_PLACES = {name: quantity.record for name, quantity in ASKED.items()} | {
+    "fidelity": "model",
+    "observers": "listening",
+    "surroundings": "listening",
+}
+
+
+def _model(places: Mapping[str, dict[str, Any]]) -> Model:
+    """Model of single values."""
+    broadband = places.get("model.noise", {}).get("broadband", False)
+    self_noise = places.get("model.noise.broadband", {})
+    trip = self_noise.get("trip", "none")
+    if trip != "none" and not broadband:
+        raise ValueError(f"trip {trip!r} is about broadband noise: ask for broadband=True")
+    return Model(
+        loads=LoadModel(**places.get("model.loads", {})),
+        noise=NoiseModel(SelfNoiseModel(**self_noise) if broadband else None),
+        **places.get("model", {}),
+    )

@@ -1,0 +1,170 @@
+"""Every quantity once: its name, unit, default and meaning, and what it is called elsewhere.
+
+Options and their help, keys of JSON, columns of tables, inputs and outputs of components and the
+nomenclature page (docs/conventions.md) come from this table. Nothing here is slow to import.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+from typing import Any
+
+# Records that hold quantities that are asked for, as a dotted path from the request; results have
+# none.
+POINT, AIR, CHANGE = "point", "point.air", "change"
+LOADS, SELF_NOISE, FIDELITY = "model.loads", "model.noise.broadband", "model.fidelity"
+LISTENING = "listening"
+
+
+@dataclasses.dataclass(frozen=True)
+class Quantity:
+    """A quantity and its names.
+
+    Attributes
+    ----------
+    name : str
+        Name in Python and of the variable of a component.
+    unit : str
+        Unit as OpenMDAO writes it; empty where there is none.
+    meaning : str
+        One line.
+    record : str
+        Record of the request that holds it, as a dotted path; empty for a result.
+    default : object
+        Value where nothing is asked; None where the propeller or something else gives it.
+    json : str
+        Key in JSON and column in tables; by default the name.
+    variable : str
+        Name in OpenMDAO; by default the name.
+    per_node : bool
+        Whether it belongs to an operating point, and has the axis of nodes in components.
+    option : str
+        Option of the command line; empty where there is none. A switch turns the default over.
+    placeholder : str
+        What stands for the value of the option in its help; empty for a switch.
+    help : str
+        Help of the option; by default the meaning with the unit.
+    """
+
+    name: str
+    unit: str
+    meaning: str
+    record: str = ""
+    default: Any = None
+    json: str = ""
+    variable: str = ""
+    per_node: bool = True
+    option: str = ""
+    placeholder: str = ""
+    help: str = ""
+
+    def __post_init__(self) -> None:
+        """Fill in the names that are the same."""
+        # The attribute of a frozen dataclass can only be set this way.
+        for attribute in ("json", "variable"):
+            if not getattr(self, attribute):
+                object.__setattr__(self, attribute, self.name)
+        if not self.help:
+            unit = f" [{self.unit}]" if self.unit else ""
+            object.__setattr__(self, "help", self.meaning + unit)
+
+
+_ASKED = (
+    Quantity(
+        "rpm", "rpm", "rotation speed", POINT, option="--rpm", placeholder="N",
+        help="rotation speed [rev/min]",
+    ),
+    Quantity(
+        "thrust", "N", "thrust of all blades", POINT, variable="thrust_required",
+        option="--thrust", placeholder="N", help="find the rotation speed that gives this thrust"
+        " [N]",
+    ),
+    Quantity(
+        "speed", "m/s", "axial flight speed, 0 is hover", POINT, 0.0, option="--speed",
+        placeholder="M_S", help="flight speed along the axis [m/s], default 0: hover",
+    ),
+    Quantity(
+        "density", "kg/m**3", "density of the air", AIR, 1.225, json="rho", option="--rho",
+        placeholder="KG_M3", help="air density [kg/m3], default 1.225",
+    ),
+    Quantity("sound_speed", "m/s", "speed of sound", AIR, 340.294),
+    Quantity("dynamic_viscosity", "Pa*s", "dynamic viscosity of the air", AIR, 1.789e-5),
+    Quantity("temperature", "K", "temperature of the air that absorbs sound", AIR, 288.15),
+    Quantity("pressure", "Pa", "pressure of the air that absorbs sound", AIR, 101325.0),
+    Quantity("relative_humidity", "", "relative humidity of the air, 0 ... 1", AIR, 0.7),
+    Quantity(
+        "twist_offset_deg", "deg", "added to the blade angle everywhere", CHANGE, 0.0,
+        per_node=False, option="--twist-offset", placeholder="DEG",
+        help="added to the blade angle everywhere [deg], default 0",
+    ),
+    Quantity(
+        "chord_factor", "", "times the chord everywhere", CHANGE, 1.0, per_node=False,
+        option="--chord-factor", placeholder="F", help="times the chord everywhere, default 1",
+    ),
+    Quantity(
+        "diameter", "m", "diameter from tip to tip, which stretches the whole blade", CHANGE,
+        per_node=False, option="--diameter", placeholder="M",
+        help="stretches the whole blade [m]; default the propeller's",
+    ),
+    Quantity(
+        "n_blades", "", "number of blades", CHANGE, per_node=False, option="--blades",
+        placeholder="B", help="number of blades; default the propeller's",
+    ),
+    Quantity(
+        "viscous", "", "lattice held to the polars of the sections", LOADS, True, per_node=False,
+        option="--inviscid", help="without the polars of the sections: no drag",
+    ),
+    Quantity(
+        "stall_delay", "", "stall of the sections delayed by rotation", LOADS, True,
+        per_node=False, option="--no-stall-delay",
+        help="let the sections stall as in two dimensions; by default rotation delays it (Du and"
+        " Selig)",
+    ),
+    Quantity(
+        "broadband", "", "broadband self-noise beside the tones", "model.noise", False,
+        per_node=False, option="--broadband", help="add the broadband self-noise to the tones",
+    ),
+    Quantity(
+        "trip", "", "tripping of the boundary layers in broadband noise", SELF_NOISE, "none",
+        per_node=False, option="--trip", placeholder="{none,light,heavy}",
+        help="tripped boundary layers in the broadband noise, default none. Untripped ones shed"
+        " vortices, which rule at the small angles of cruise; a rough or dusty blade sheds none",
+    ),
+)  # fmt: skip
+
+_RESULTS = (
+    Quantity("J", "", "advance ratio V / (n D), n in rev/s"),
+    Quantity("thrust", "N", "thrust of all blades"),
+    Quantity("torque", "N*m", "shaft torque of all blades"),
+    Quantity("shaft_power", "W", "shaft power of all blades"),
+    Quantity("CT", "", "thrust coefficient T / (rho n^2 D^4)"),
+    Quantity("CQ", "", "torque coefficient Q / (rho n^2 D^5)"),
+    Quantity("CP", "", "power coefficient 2 pi CQ"),
+    Quantity("eta", "", "propulsive efficiency J CT / CP, 0 in hover", variable="efficiency"),
+    Quantity("converged", "", "whether the solution of the loads has converged"),
+    Quantity("failure", "", "why it has not, or null"),
+)
+
+_LEVELS = (
+    Quantity("spl_bpf_db", "dB", "level of the tone at the blade passage frequency"),
+    Quantity("oaspl_db", "dB", "overall level of the tones"),
+    Quantity("oaspl_thickness_db", "dB", "overall level of the tones of thickness noise"),
+    Quantity("oaspl_loading_db", "dB", "overall level of the tones of loading noise"),
+    Quantity("oaspl_dba", "dBA", "A-weighted overall level of the tones"),
+)
+
+_BROADBAND_LEVELS = (
+    Quantity("oaspl_broadband_db", "dB", "overall level of the broadband noise"),
+    Quantity("oaspl_broadband_dba", "dBA", "A-weighted overall level of the broadband noise"),
+    Quantity("oaspl_total_db", "dB", "overall level of tones and broadband noise"),
+    Quantity("oaspl_total_dba", "dBA", "A-weighted overall level of tones and broadband noise"),
+)
+
+#: What may be asked, by name.
+ASKED = {quantity.name: quantity for quantity in _ASKED}
+#: What an analysis finds, by name.
+RESULTS = {quantity.name: quantity for quantity in _RESULTS}
+#: Levels of the tones at an observer, by name.
+LEVELS = {quantity.name: quantity for quantity in _LEVELS}
+#: Levels at an observer that broadband noise adds, by name.
+BROADBAND_LEVELS = {quantity.name: quantity for quantity in _BROADBAND_LEVELS}
