@@ -6,15 +6,16 @@ from typing import Any
 
 import numpy as np
 
-from propmdao.acoustics.levels.decibels import oaspl_db, spl_db
+from propmdao.acoustics.levels.decibels import mean_square, oaspl_db, spl_db
 from propmdao.acoustics.levels.weighting import oaspl_dba
 from propmdao.acoustics.sources.formulation1a import tones
 from propmdao.components.bases.jax_component import Arrays
 from propmdao.components.bases.nodes_comp import STATIC, OperatingPointsComp
-from propmdao.components.noise_inputs import add_noise_inputs, check_rotor, noise_at
+from propmdao.components.inputs.noise_inputs import add_noise_inputs, check_rotor, noise_state
 from propmdao.geometry.surface import surface_panels
 from propmdao.records.fidelity import Fidelity
 from propmdao.records.loads import PointLoads
+from propmdao.records.quantities import LEVELS
 
 
 class AcousticsComp(OperatingPointsComp):
@@ -90,14 +91,8 @@ class AcousticsComp(OperatingPointsComp):
             "load_force", shape=(n_loads, 3), units="N", desc="Force on the fluid."
         )
         add_noise_inputs(self, observers)
-        for name, desc in (
-            ("spl_bpf_db", "Level of the blade-passage tone."),
-            ("oaspl_db", "Overall level of the tones."),
-            ("oaspl_thickness_db", "Overall level of thickness noise alone."),
-            ("oaspl_loading_db", "Overall level of loading noise alone."),
-            ("oaspl_dba", "A-weighted overall level of the tones."),
-        ):
-            self.add_point_output(name, shape=(n_observers,), desc=desc)
+        for quantity in LEVELS.values():
+            self.add_point_output(quantity.variable, shape=(n_observers,), desc=quantity.meaning)
         self.add_point_output(
             "mean_square_pressure", shape=(n_observers, fidelity.n_harmonics), units="Pa**2"
         )
@@ -111,20 +106,19 @@ class AcousticsComp(OperatingPointsComp):
 
 def _levels(inputs: Arrays, constants: None, static: tuple[int, int]) -> Arrays:
     n_blades, n_harmonics = static
-    heard = tones(
+    sound = tones(
         surface_panels(inputs["surface_nodes"]),
         PointLoads(inputs["load_position"], inputs["load_force"]),
         n_blades,
-        *noise_at(inputs),
+        noise_state(inputs),
+        inputs["observer_position"],
         n_harmonics,
     )
     return {
-        "spl_bpf_db": spl_db(heard.total)[:, 0],
-        "oaspl_db": oaspl_db(heard.total),
-        "oaspl_thickness_db": oaspl_db(heard.thickness),
-        "oaspl_loading_db": oaspl_db(heard.loading),
-        "oaspl_dba": oaspl_dba(heard.frequency_hz, heard.total),
-        # abs() has no derivative where it is silent
-        "mean_square_pressure": 2.0 * (heard.total.real**2 + heard.total.imag**2),
-        "frequency": heard.frequency_hz,
+        "spl_bpf_db": spl_db(sound.total)[:, 0],
+        "oaspl_db": oaspl_db(sound.total),
+        **{f"oaspl_{name}_db": oaspl_db(part) for name, part in sound.parts.items()},
+        "oaspl_dba": oaspl_dba(sound.frequency_hz, sound.total),
+        "mean_square_pressure": mean_square(sound.total),
+        "frequency": sound.frequency_hz,
     }

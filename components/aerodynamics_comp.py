@@ -4,23 +4,25 @@ from __future__ import annotations
 
 from typing import Any
 
-import jax
 import openmdao.api as om
 
 from propmdao.aerodynamics.coefficients import coefficients
-from propmdao.aerodynamics.solutions.axial import solve_steady
+from propmdao.aerodynamics.solutions import axial
 from propmdao.aerodynamics.solutions.known_root import steady_at
-from propmdao.aerodynamics.solutions.result import SteadySolution, failure
+from propmdao.aerodynamics.solutions.result import RotorLoads, failure
 from propmdao.components.bases.jax_component import Arrays
 from propmdao.components.bases.nodes_comp import OperatingPointsComp
 from propmdao.components.bases.root_component import RootComponent
-from propmdao.components.rotor_inputs import (
+from propmdao.components.inputs.rotor_inputs import (
+    RotorConstants,
     add_rotor_inputs,
     declare_rotor,
     require_diameter,
     rotor_at,
 )
 from propmdao.records.fidelity import Fidelity
+from propmdao.records.quantities import RESULTS
+from propmdao.records.states import RotorState
 from propmdao.records.units import RAD_PER_S
 
 
@@ -104,12 +106,11 @@ class AerodynamicsComp(OperatingPointsComp, RootComponent):
         nc, ns = fidelity.n_chordwise, fidelity.n_spanwise
         self.constants = add_rotor_inputs(self)
         self._add_rotation_speed()
-        self.add_point_output("thrust", units="N", desc="Of all blades.")
-        self.add_point_output("torque", units="N*m", desc="Of all blades.")
-        self.add_point_output("shaft_power", units="W", desc="Of all blades.")
-        self.add_point_output("efficiency", desc="Thrust times speed over shaft power.")
-        for name in ("J", "CT", "CQ", "CP"):
-            self.add_point_output(name)
+        for name in ("thrust", "torque", "shaft_power", "eta", "J", "CT", "CQ", "CP"):
+            quantity = RESULTS[name]
+            self.add_point_output(
+                quantity.variable, units=quantity.unit or None, desc=quantity.meaning
+            )
         if self.options["loads"]:
             self._add_loads(nc, ns, n_loads(fidelity))
         self.search, self.function = _steady, _at_root
@@ -133,60 +134,57 @@ class AerodynamicsComp(OperatingPointsComp, RootComponent):
 
     def check(self, inputs: Any, values: Any) -> None:
         require_diameter(inputs)
-        reason = failure(values["solution"])
+        reason = failure(values["loads"])
         if reason:
             raise om.AnalysisError(
                 f"{reason}, at {values['rpm'][0]:g} rpm and {inputs['speed'][0]:g} m/s"
             )
 
 
-def _steady(inputs: Arrays, constants: Any, static: int) -> Arrays:
-    omega = inputs["rpm"][0] * RAD_PER_S
-    solution = solve_steady(**rotor_at(inputs, constants), n_blades=static, rotation_speed=omega)
-    found = {"induced_velocity": solution.induced_velocity[None], "solution": solution}
-    return {**loads(solution, omega, inputs), **found}
+def _steady(inputs: Arrays, constants: RotorConstants, static: int) -> Arrays:
+    case = rotor_at(inputs, constants, static, inputs["rpm"][0] * RAD_PER_S)
+    loads = axial.solve(case)
+    found = {"induced_velocity": loads.induced_velocity[None], "loads": loads}
+    return {**loads_outputs(loads, case.state, inputs), **found}
 
 
-def _at_root(inputs: Arrays, constants: Any, static: int) -> Arrays:
-    w, omega = inputs["induced_velocity"][0], inputs["rpm"][0] * RAD_PER_S
-    solution, residual = steady_at(
-        w, **rotor_at(inputs, constants), n_blades=static, rotation_speed=omega
-    )
-    return {**loads(solution, omega, inputs), "residual": residual[None]}
+def _at_root(inputs: Arrays, constants: RotorConstants, static: int) -> Arrays:
+    case = rotor_at(inputs, constants, static, inputs["rpm"][0] * RAD_PER_S)
+    loads, residual = steady_at(inputs["induced_velocity"][0], case)
+    return {**loads_outputs(loads, case.state, inputs), "residual": residual[None]}
 
 
-def loads(solution: SteadySolution, omega: jax.Array, inputs: Arrays) -> Arrays:
+def loads_outputs(loads: RotorLoads, state: RotorState, inputs: Arrays) -> Arrays:
     """Outputs of the component.
 
     Parameters
     ----------
-    solution : SteadySolution
-        Loads.
-    omega : float
-        Rotation speed [rad/s].
+    loads : RotorLoads
+        Loads of the rotor.
+    state : RotorState
+        How the rotor turns and flies.
     inputs : dict of arrays
         Inputs by name.
 
     Returns
     -------
     dict of arrays
-        By name, and the rotation speed.
+        Outputs by name, and the rotation speed.
     """
-    speed, density, diameter = (inputs[name][0] for name in ("speed", "density", "diameter"))
-    of = coefficients(solution.thrust, solution.torque, omega, speed, density, diameter)
+    numbers = coefficients(loads.thrust, loads.torque, state, inputs["diameter"][0])
     return {
-        "rpm": (omega / RAD_PER_S)[None],
-        "thrust": solution.thrust[None],
-        "torque": solution.torque[None],
-        "shaft_power": (solution.torque * omega)[None],
-        "efficiency": of.eta[None],
-        "J": of.J[None],
-        "CT": of.CT[None],
-        "CQ": of.CQ[None],
-        "CP": of.CP[None],
-        "circulation": solution.circulation,
-        "load_position": solution.point_loads.position,
-        "load_force": solution.point_loads.force,
-        "section_speed": solution.sections.relative_speed,
-        "section_lift_coefficient": solution.sections.lift_coefficient,
+        "rpm": (state.rotation_speed / RAD_PER_S)[None],
+        "thrust": loads.thrust[None],
+        "torque": loads.torque[None],
+        "shaft_power": (loads.torque * state.rotation_speed)[None],
+        "efficiency": numbers.eta[None],
+        "J": numbers.J[None],
+        "CT": numbers.CT[None],
+        "CQ": numbers.CQ[None],
+        "CP": numbers.CP[None],
+        "circulation": loads.circulation,
+        "load_position": loads.point_loads.position,
+        "load_force": loads.point_loads.force,
+        "section_speed": loads.sections.relative_speed,
+        "section_lift_coefficient": loads.sections.lift_coefficient,
     }

@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 import dataclasses
-from typing import Any, get_args
+from typing import Any
 
 import jax.numpy as jnp
 import numpy as np
 from jax import Array
-from openmdao.utils.options_dictionary import OptionsDictionary
 
-from propmdao.acoustics.broadband.boundary_layer import Trip
 from propmdao.acoustics.levels.decibels import energy_sum_db, level_db
 from propmdao.acoustics.levels.weighting import level_dba
 from propmdao.aerodynamics.lattice.rings import vortex_rings
@@ -18,10 +16,13 @@ from propmdao.aerodynamics.lattice.strips import blade_strips, strip_radii
 from propmdao.analysis.self_noise import BANDS_HZ, self_noise, strip_flow
 from propmdao.components.bases.jax_component import Arrays
 from propmdao.components.bases.nodes_comp import STATIC, OperatingPointsComp
-from propmdao.components.noise_inputs import add_noise_inputs, check_rotor, noise_at
+from propmdao.components.inputs.model_options import declare_trip
+from propmdao.components.inputs.noise_inputs import add_noise_inputs, check_rotor, noise_state
 from propmdao.geometry.blade import Blade, span_interpolation
 from propmdao.propeller.description import Propeller
 from propmdao.records.fidelity import Fidelity
+from propmdao.records.models import SelfNoiseModel
+from propmdao.records.quantities import BROADBAND_LEVELS
 
 _SILENCE_DB = -200.0
 
@@ -29,8 +30,8 @@ _SILENCE_DB = -200.0
 class BroadbandComp(OperatingPointsComp):
     """Broadband self-noise by Brooks, Pope and Marcolini, at observers that fly along.
 
-    Names without a word are those of the tones, `oaspl_db` and `oaspl_dba` of `AcousticsComp`;
-    here are "broadband", the noise alone, and "total", tones and noise together. With `num_nodes`
+    `oaspl_db` and `oaspl_dba` without a qualifier mean the tones only, those of `AcousticsComp`;
+    "broadband" means the noise alone, "total" tones and noise together. With `num_nodes`
     everything but the blade, the observers and `band_frequency` has a leading axis of that many
     operating points.
 
@@ -112,53 +113,35 @@ class BroadbandComp(OperatingPointsComp):
             "broadband_mean_square_pressure", shape=(n_observers, BANDS_HZ.size), units="Pa**2"
         )
         self.add_output("band_frequency", val=np.asarray(BANDS_HZ), units="Hz")
-        for name, desc in (
-            ("oaspl_broadband_db", "Overall level of broadband noise alone."),
-            ("oaspl_broadband_dba", "A-weighted level of broadband noise alone."),
-            ("oaspl_total_db", "Overall level of tones and broadband noise."),
-            ("oaspl_total_dba", "A-weighted level of tones and broadband noise."),
-        ):
-            self.add_point_output(name, shape=(n_observers,), desc=desc)
+        for quantity in BROADBAND_LEVELS.values():
+            self.add_point_output(quantity.variable, shape=(n_observers,), desc=quantity.meaning)
         stations = propeller.r_over_R
         radii = strip_radii(float(stations[0]), ns)
         self.function = _broadband
-        self.static = int(propeller.n_blades), self.options["trip"]
+        self.static = int(propeller.n_blades), SelfNoiseModel(trip=self.options["trip"])
         self.constants = blade, span_interpolation(stations, radii)
 
     def check(self, inputs: Any, values: Any) -> None:
         check_rotor(inputs, "lattice_nodes")
 
 
-def declare_trip(options: OptionsDictionary) -> None:
-    """Declare how the boundary layers are tripped.
-
-    Parameters
-    ----------
-    options : OptionsDictionary
-        Of a component or group.
-    """
-    options.declare("trip", "none", values=get_args(Trip), desc="Of the boundary layers.")
-
-
-def _broadband(inputs: Arrays, constants: Any, static: tuple[int, Trip]) -> Arrays:
-    (n_blades, trip), (blade, section_radii) = static, constants
+def _broadband(inputs: Arrays, constants: Any, static: tuple[int, SelfNoiseModel]) -> Arrays:
+    (n_blades, model), (blade, section_radii) = static, constants
     blade = dataclasses.replace(blade, thickness_over_chord=inputs["thickness_over_chord"])
     nodes = inputs["lattice_nodes"]
     flow = strip_flow(
-        # The noise knows no r/R, and thus no diameter but that of the lattice.
+        # Only absolute sizes matter here, so the described blade's radius will do.
         blade_strips(nodes, vortex_rings(nodes), blade.radius),
         inputs["section_speed"],
         inputs["section_lift_coefficient"],
         blade,
         section_radii,
     )
-    heard = self_noise(flow, n_blades, *noise_at(inputs), trip)
-    broadband_db, broadband_dba = (
-        level_db(heard.total.sum(axis=1)),
-        level_dba(BANDS_HZ, heard.total),
-    )
+    noise = self_noise(flow, n_blades, noise_state(inputs), inputs["observer_position"], model)
+    broadband_db = level_db(noise.total.sum(axis=1))
+    broadband_dba = level_dba(BANDS_HZ, noise.total)
     return {
-        "broadband_mean_square_pressure": heard.total,
+        "broadband_mean_square_pressure": noise.total,
         "oaspl_broadband_db": broadband_db,
         "oaspl_broadband_dba": broadband_dba,
         "oaspl_total_db": _together(inputs["oaspl_db"], broadband_db),

@@ -12,7 +12,7 @@ from propmdao.aerodynamics.lattice.strips import strip_radii
 from propmdao.aerodynamics.sections.polars.family import SectionPolars, blade_tables
 from propmdao.components.bases.jax_component import Arrays, JaxComponent, evaluate
 from propmdao.components.bases.nodes_comp import STATIC
-from propmdao.components.rotor_inputs import require_diameter
+from propmdao.components.inputs.rotor_inputs import require_diameter
 from propmdao.geometry.blade import Blade, design_lift_coefficient, span_interpolation
 from propmdao.geometry.meshes import blade_meshes, mesh_radii
 from propmdao.propeller.description import Propeller
@@ -142,7 +142,8 @@ class GeometryComp(JaxComponent):
             ("thickness_over_chord", thickness, (thickness > 0.0) & (thickness < 1.0),
              "be above 0 and below 1"),
         ):  # fmt: skip
-            for station in np.flatnonzero(~holds)[:1]:
+            if not holds.all():
+                station = int(np.argmin(holds))
                 r = self.options["propeller"].r_over_R[station]
                 raise om.AnalysisError(
                     f"{name} must {rule}; station {station} (r/R {r:g}) has {value[station]:g}"

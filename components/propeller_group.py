@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from pathlib import Path
 
 import numpy as np
 import openmdao.api as om
@@ -12,13 +13,16 @@ from propmdao.aerodynamics.sections.polars.propeller_polars import polars_for
 from propmdao.components.acoustics_comp import AcousticsComp
 from propmdao.components.aerodynamics_comp import AerodynamicsComp, n_loads
 from propmdao.components.bases.nodes_comp import declare_num_nodes
-from propmdao.components.broadband_comp import BroadbandComp, declare_trip
+from propmdao.components.broadband_comp import BroadbandComp
 from propmdao.components.geometry_comp import CAMBER_INPUTS, GeometryComp, blade_distributions
+from propmdao.components.inputs.model_options import declare_model, model_of
+from propmdao.components.inputs.rpm_bounds import declare_bounds
 from propmdao.components.rotation_speed_comp import RotationSpeedComp
-from propmdao.components.rpm_bounds import declare_bounds
 from propmdao.components.trimmed_aerodynamics_comp import TrimmedAerodynamicsComp
+from propmdao.formats.propellers import load_propeller
 from propmdao.propeller.description import Propeller
-from propmdao.records.fidelity import Fidelity
+from propmdao.records.listening import require_positions
+from propmdao.records.models import Model
 
 TRIM_METHODS = ("solve", "two_point")
 SPLINE_METHODS = ("slinear", "akima", "cubic")
@@ -56,7 +60,7 @@ class PropellerGroup(om.Group):
     thrust, torque, shaft_power, efficiency, J, CT, CQ, CP : float
         Of `AerodynamicsComp`, ``N``, ``N*m``, ``W``.
     spl_bpf_db, oaspl_db, oaspl_thickness_db, oaspl_loading_db, oaspl_dba : (n_observers,) arrays
-        Levels of the tones, dB re 20 uPa, with and without broadband noise.
+        Levels of the tones, dB re 20 uPa, whether there is broadband noise or not.
     oaspl_broadband_db, oaspl_broadband_dba, oaspl_total_db, oaspl_total_dba : (n_observers,) arrays
         With `broadband`: levels of the broadband noise alone, and of tones and broadband together.
     lattice_nodes, surface_nodes, section_polars, circulation, load_position, load_force, \
@@ -69,8 +73,9 @@ broadband_mean_square_pressure, band_frequency
     num_nodes : int or None
         Number of operating points, of a mission's phase or a multi-point design: their axis leads,
         also that of a single one. None (default): one point, with the shapes above.
-    propeller : Propeller
-        The described propeller; its values are the initial ones.
+    propeller : Propeller, str or Path
+        The described propeller, a name of the catalogue or the path of a propeller file; its values
+        are the initial ones.
     observers : (n_observers, 3) array or None
         Initial observer positions [m]; `propmdao.arc` makes them. None
         (default): thrust and power alone, neither loads nor noise are outputs, and the derivatives
@@ -90,6 +95,8 @@ broadband_mean_square_pressure, band_frequency
     spline_method : str
         What leads through the control points: ``"slinear"`` (straight lines), ``"akima"`` or
         ``"cubic"``.
+    wake : WakeLaw
+        How the prescribed wake moves.
     viscous : bool
         Hold the lattice to the polars of the sections (default); False for inviscid flow.
     stall_delay : bool
@@ -116,90 +123,103 @@ broadband_mean_square_pressure, band_frequency
     def initialize(self) -> None:
         declare_num_nodes(self.options)
         declare = self.options.declare
-        declare("propeller", types=Propeller, desc="The described propeller.")
+        declare("propeller", types=(Propeller, str, Path), desc="Description, name or file.")
         declare("observers", None, types=np.ndarray, allow_none=True, desc="Positions [m].")
-        declare("fidelity", Fidelity(), types=Fidelity, desc="Panels and harmonics.")
+        declare_model(self.options)
         declare("trim", "thrust", values=("thrust", "rpm"), desc="What is given.")
         declare_bounds(self.options)
         declare("trim_method", "solve", values=TRIM_METHODS, desc="How the rpm is found.")
         declare("design_distributions", {}, types=dict, desc="Name -> r/R of control points.")
         declare("spline_method", "slinear", values=SPLINE_METHODS, desc="Through control points.")
-        declare("viscous", True, types=bool, desc="Hold the lattice to section polars.")
-        declare("stall_delay", True, types=bool, desc="Of rotating sections.")
         declare("polars", None, types=SectionPolars, allow_none=True, desc="Own ones.")
-        declare("broadband", False, types=bool, desc="Add the self-noise of the blades.")
-        declare_trip(self.options)
         declare("camber", "camber_over_chord", values=CAMBER_INPUTS, desc="How camber is given.")
 
     def setup(self) -> None:
         options = self.options
-        propeller, fidelity = options["propeller"], options["fidelity"]
+        model, observers = model_of(options), options["observers"]
+        if observers is not None:
+            require_positions(observers)
+        elif model.noise.broadband is not None:
+            raise ValueError("broadband noise is heard at observers; there are none")
+        propeller = options["propeller"]
+        if not isinstance(propeller, Propeller):
+            propeller = load_propeller(propeller)
         polars = None
-        if options["viscous"]:
+        if model.loads.viscous:
             polars = options["polars"] or polars_for(propeller)
-        self._add_splines()
+        self._add_geometry(propeller, polars)
+        self._add_loads(propeller, polars)
+        if observers is not None:
+            self._add_noise(propeller, model)
+
+    def _add_geometry(self, propeller: Propeller, polars: SectionPolars | None) -> None:
+        """Splines of the design distributions, and the meshes that they shape."""
+        options = self.options
+        initial = blade_distributions(propeller, options["camber"])
+        self._add_splines(propeller.r_over_R, initial)
         self.add_subsystem(
             "geometry",
             GeometryComp(
-                propeller=propeller, fidelity=fidelity, camber=options["camber"], polars=polars
+                propeller=propeller,
+                fidelity=options["fidelity"],
+                camber=options["camber"],
+                polars=polars,
             ),
             promotes_inputs=["diameter"],
             promotes_outputs=["*"],
         )
         self.set_input_defaults("diameter", val=propeller.diameter, units="m")
-        for name in blade_distributions(propeller, options["camber"]):
+        for name in initial:
             self._promote_distribution("geometry", name)
-        observers = options["observers"]
+
+    def _add_loads(self, propeller: Propeller, polars: SectionPolars | None) -> None:
+        """Rotation speed, thrust and power, and the loads where there are observers."""
+        options = self.options
         rotor = {
             "num_nodes": options["num_nodes"],
             "n_blades": int(propeller.n_blades),
-            "fidelity": fidelity,
             "polars": polars,
-            "stall_delay": options["stall_delay"],
+            **{name: options[name] for name in ("fidelity", "stall_delay", "wake")},
         }
-        if options["trim"] == "thrust":
-            rotor["rpm_bounds"] = options["rpm_bounds"]
-        trimmed = options["trim"] == "thrust" and options["trim_method"] == "solve"
-        if options["trim"] == "thrust" and not trimmed:
-            self.add_subsystem("rotation_speed", RotationSpeedComp(**rotor), promotes=["*"])
-            del rotor["rpm_bounds"]
-        aerodynamics = TrimmedAerodynamicsComp if trimmed else AerodynamicsComp
-        self.add_subsystem(
-            "aerodynamics", aerodynamics(**rotor, loads=observers is not None), promotes=["*"]
-        )
-        if observers is not None:
-            self._add_noise(rotor["n_blades"])
-        elif options["broadband"]:
-            raise ValueError("broadband noise is heard at observers; there are none")
-        if options["trip"] != "none" and not options["broadband"]:
-            raise ValueError(f"trip '{options['trip']}' is about broadband noise, which is off")
+        bounds = {"rpm_bounds": options["rpm_bounds"]}
+        loads = options["observers"] is not None
+        if options["trim"] == "rpm":
+            aerodynamics = AerodynamicsComp(**rotor, loads=loads)
+        elif options["trim_method"] == "solve":
+            aerodynamics = TrimmedAerodynamicsComp(**rotor, **bounds, loads=loads)
+        else:
+            speed = RotationSpeedComp(**rotor, **bounds)
+            self.add_subsystem("rotation_speed", speed, promotes=["*"])
+            aerodynamics = AerodynamicsComp(**rotor, loads=loads)
+        self.add_subsystem("aerodynamics", aerodynamics, promotes=["*"])
 
-    def _add_noise(self, n_blades: int) -> None:
-        options = self.options
-        heard = {name: options[name] for name in ("num_nodes", "observers", "fidelity")}
-        n = n_loads(options["fidelity"])
-        self.add_subsystem(
-            "acoustics", AcousticsComp(n_blades=n_blades, n_loads=n, **heard), promotes=["*"]
+    def _add_noise(self, propeller: Propeller, model: Model) -> None:
+        """Tones, and broadband noise where it is asked for."""
+        shared = {name: self.options[name] for name in ("num_nodes", "observers", "fidelity")}
+        tones = AcousticsComp(
+            n_blades=int(propeller.n_blades), n_loads=n_loads(model.fidelity), **shared
         )
-        if options["broadband"]:
-            self.add_subsystem(
-                "broadband",
-                BroadbandComp(propeller=options["propeller"], trip=options["trip"], **heard),
-                promotes_inputs=[
-                    "lattice_nodes",
-                    "section_speed",
-                    "section_lift_coefficient",
-                    "rpm",
-                    "speed",
-                    "density",
-                    "sound_speed",
-                    "observer_position",
-                    "oaspl_db",
-                    "oaspl_dba",
-                ],
-                promotes_outputs=["*"],
-            )
-            self._promote_distribution("broadband", "thickness_over_chord")
+        self.add_subsystem("acoustics", tones, promotes=["*"])
+        if model.noise.broadband is None:
+            return
+        self.add_subsystem(
+            "broadband",
+            BroadbandComp(propeller=propeller, trip=model.noise.broadband.trip, **shared),
+            promotes_inputs=[
+                "lattice_nodes",
+                "section_speed",
+                "section_lift_coefficient",
+                "rpm",
+                "speed",
+                "density",
+                "sound_speed",
+                "observer_position",
+                "oaspl_db",
+                "oaspl_dba",
+            ],
+            promotes_outputs=["*"],
+        )
+        self._promote_distribution("broadband", "thickness_over_chord")
 
     def _promote_distribution(self, component: str, name: str) -> None:
         """Promote an input that is a distribution, where it is splined from the spline's output."""
@@ -207,13 +227,10 @@ broadband_mean_square_pressure, band_frequency
         # SplineComp's output has a leading axis of one.
         self.promotes(component, inputs=[name], src_indices=om.slicer[0, :] if splined else None)
 
-    def _add_splines(self) -> None:
+    def _add_splines(self, stations: np.ndarray, initial: Mapping[str, np.ndarray]) -> None:
         """Control points to stations, a spline for each design distribution."""
-        propeller = self.options["propeller"]
-        stations = propeller.r_over_R
-        initial = blade_distributions(propeller, self.options["camber"])
-        for name, at in self.options["design_distributions"].items():
-            points = _control_points(name, at, initial, stations)
+        for name, control_points in self.options["design_distributions"].items():
+            points = _control_points(name, control_points, initial, stations)
             values = np.interp(points, stations, initial[name])
             units = "rad" if name == "beta" else None
             spline = om.SplineComp(
@@ -232,13 +249,13 @@ broadband_mean_square_pressure, band_frequency
 
 
 def _control_points(
-    name: str, at: object, known: Mapping[str, object], stations: np.ndarray
+    name: str, given: object, known: Mapping[str, object], stations: np.ndarray
 ) -> np.ndarray:
     if name not in known:
         raise ValueError(
             f"design_distributions: unknown distribution '{name}'; there are {', '.join(known)}"
         )
-    points = np.asarray(at, dtype=float)
+    points = np.asarray(given, dtype=float)
     if points.ndim != 1 or points.size < 2 or np.any(np.diff(points) <= 0.0):
         raise ValueError(
             f"design_distributions: control points of {name} must be at least two rising r/R; "

@@ -6,16 +6,21 @@ from typing import Any
 
 import openmdao.api as om
 
-from propmdao.aerodynamics.trim import rotation_speed_by_interpolation
+from propmdao.aerodynamics.solutions import axial
+from propmdao.aerodynamics.trim import (
+    TrimError,
+    require_bounds,
+    rotation_speed_by_interpolation,
+)
 from propmdao.components.bases.jax_component import Arrays
 from propmdao.components.bases.nodes_comp import OperatingPointsComp
-from propmdao.components.rotor_inputs import (
+from propmdao.components.inputs.rotor_inputs import (
     add_rotor_inputs,
     declare_rotor,
     require_diameter,
     rotor_at,
 )
-from propmdao.components.rpm_bounds import bounds_at, declare_bounds, given_bounds
+from propmdao.components.inputs.rpm_bounds import bounds_at, declare_bounds, given_bounds
 from propmdao.records.units import RAD_PER_S
 
 
@@ -76,19 +81,24 @@ class RotationSpeedComp(OperatingPointsComp):
         declare_bounds(self.options)
 
     def setup(self) -> None:
-        grid = add_rotor_inputs(self)
+        constants = add_rotor_inputs(self)
         self.add_point_input("thrust_required", val=1.0, units="N")
         self.add_point_output("rpm", val=4000.0, units="rpm")
         self.function = _interpolated
         self.static = self.options["n_blades"]
-        self.constants = grid, given_bounds(self.options)
+        self.constants = constants, given_bounds(self.options)
 
     def at_rest(self, inputs: Arrays) -> bool:
         return not inputs["thrust_required"].any()
 
     def check(self, inputs: Any, values: Any) -> None:
         require_diameter(inputs)
-        low, high = bounds_at(inputs, self.constants[1]) / RAD_PER_S
+        bounds = bounds_at(inputs, self.constants[1])
+        try:
+            require_bounds(bounds, inputs["speed"][0])
+        except TrimError as error:
+            raise om.AnalysisError(str(error)) from error
+        low, high = float(bounds.low) / RAD_PER_S, float(bounds.high) / RAD_PER_S
         (rpm,) = values["rpm"]
         if not low <= rpm <= high:
             raise om.AnalysisError(
@@ -98,10 +108,8 @@ class RotationSpeedComp(OperatingPointsComp):
 
 
 def _interpolated(inputs: Arrays, constants: Any, static: int) -> Arrays:
-    grid, bounds = constants
-    low, high = bounds_at(inputs, bounds)
-    rotor, thrust = rotor_at(inputs, grid), inputs["thrust_required"][0]
-    omega = rotation_speed_by_interpolation(
-        **rotor, n_blades=static, thrust_required=thrust, low=low, high=high
-    )
+    rotor_constants, given = constants
+    bounds = bounds_at(inputs, given)
+    case = rotor_at(inputs, rotor_constants, static, bounds.low)
+    omega = rotation_speed_by_interpolation(axial, case, inputs["thrust_required"][0], bounds)
     return {"rpm": omega[None] / RAD_PER_S}

@@ -6,12 +6,20 @@ from typing import Any
 
 import openmdao.api as om
 
+from propmdao.aerodynamics.solutions import axial
+from propmdao.aerodynamics.solutions.case import RotorCase
 from propmdao.aerodynamics.solutions.known_root import trimmed_at
-from propmdao.aerodynamics.trim import TrimError, require_reached, solve_trimmed
-from propmdao.components.aerodynamics_comp import AerodynamicsComp, loads
+from propmdao.aerodynamics.trim import (
+    Bounds,
+    TrimError,
+    require_bounds,
+    require_reached,
+    solve_for_thrust,
+)
+from propmdao.components.aerodynamics_comp import AerodynamicsComp, loads_outputs
 from propmdao.components.bases.jax_component import Arrays
-from propmdao.components.rotor_inputs import require_diameter, rotor_at
-from propmdao.components.rpm_bounds import bounds_at, declare_bounds, given_bounds
+from propmdao.components.inputs.rotor_inputs import require_diameter, rotor_at
+from propmdao.components.inputs.rpm_bounds import bounds_at, declare_bounds, given_bounds
 from propmdao.records.units import RAD_PER_S
 
 
@@ -72,32 +80,37 @@ load_force, section_speed, section_lift_coefficient
 
     def check(self, inputs: Any, values: Any) -> None:
         require_diameter(inputs)
-        found = values["rotation_speed"][0], values["missing_at_bounds"]
-        asked = _asked(inputs, self.constants)
+        case, thrust, bounds = _asked(inputs, self.constants, self.options["n_blades"])
         try:
-            require_reached(*found, **asked, n_blades=self.options["n_blades"])
+            require_bounds(bounds, case.state.speed)
+            require_reached(values["trimmed"], axial, case, thrust, bounds)
         except TrimError as error:
             raise om.AnalysisError(str(error)) from error
         super().check(inputs, values)
 
 
 def _trimmed(inputs: Arrays, constants: Any, static: int) -> Arrays:
-    omega, missing, solution = solve_trimmed(**_asked(inputs, constants), n_blades=static)
-    found = {"rotation_speed": omega[None], "missing_at_bounds": missing, "solution": solution}
-    return {**loads(solution, omega, inputs), **found}
+    case, thrust, bounds = _asked(inputs, constants, static)
+    trimmed = solve_for_thrust(axial, case, thrust, bounds)
+    state = case.state.turning(trimmed.rotation_speed)
+    found = {
+        "rotation_speed": trimmed.rotation_speed[None],
+        "trimmed": trimmed,
+        "loads": trimmed.loads,
+    }
+    return {**loads_outputs(trimmed.loads, state, inputs), **found}
 
 
-def _asked(inputs: Arrays, constants: Any) -> dict[str, Any]:
-    grid, bounds = constants
-    low, high = bounds_at(inputs, bounds)
-    thrust = inputs["thrust_required"][0]
-    return {**rotor_at(inputs, grid), "thrust_required": thrust, "low": low, "high": high}
+def _asked(inputs: Arrays, constants: Any, n_blades: int) -> tuple[RotorCase, Any, Bounds]:
+    """The rotor, the thrust required and where the rotation speed is looked for."""
+    rotor_constants, given = constants
+    bounds = bounds_at(inputs, given)
+    case = rotor_at(inputs, rotor_constants, n_blades, bounds.low)
+    return case, inputs["thrust_required"][0], bounds
 
 
 def _at_root(inputs: Arrays, constants: Any, static: int) -> Arrays:
     omega = inputs["rotation_speed"][0]
-    rotor = rotor_at(inputs, constants[0])
-    solution, missing = trimmed_at(
-        omega, **rotor, n_blades=static, thrust_required=inputs["thrust_required"][0]
-    )
-    return {**loads(solution, omega, inputs), "missing_thrust": missing[None]}
+    case = rotor_at(inputs, constants[0], static, omega)
+    loads, missing = trimmed_at(omega, case, inputs["thrust_required"][0])
+    return {**loads_outputs(loads, case.state, inputs), "missing_thrust": missing[None]}

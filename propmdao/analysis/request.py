@@ -12,10 +12,11 @@ from propmdao.propeller.changes import Change
 from propmdao.records.air import Air
 from propmdao.records.fidelity import Fidelity
 from propmdao.records.listening import Listening, Surroundings
-from propmdao.records.models import LoadModel, Model, NoiseModel, SelfNoiseModel, Trip
+from propmdao.records.models import LoadModel, Model, NoiseModel, SelfNoiseModel, Transition, Trip
 from propmdao.records.plain import from_plain, to_plain
 from propmdao.records.quantities import ASKED
 from propmdao.records.states import OperatingPoint
+from propmdao.records.wake_law import WakeLaw
 
 
 class Asked(TypedDict, total=False):
@@ -38,6 +39,8 @@ class Asked(TypedDict, total=False):
     stall_delay: bool
     broadband: bool
     trip: Trip
+    wake: WakeLaw
+    n_crit: float
     fidelity: Fidelity
     observers: npt.ArrayLike
     surroundings: Surroundings
@@ -135,6 +138,8 @@ class Request:
 
 #: Record that holds each value, as a dotted path.
 _PLACES = {name: quantity.record for name, quantity in ASKED.items()} | {
+    "wake": "model.loads",
+    "n_crit": "model.loads.transition",
     "fidelity": "model",
     "observers": "listening",
     "surroundings": "listening",
@@ -148,8 +153,9 @@ def _model(places: Mapping[str, dict[str, Any]]) -> Model:
     trip = self_noise.get("trip", "none")
     if trip != "none" and not broadband:
         raise ValueError(f"trip {trip!r} is about broadband noise: ask for broadband=True")
+    transition = Transition(**places.get("model.loads.transition", {}))
     return Model(
-        loads=LoadModel(**places.get("model.loads", {})),
+        loads=LoadModel(**places.get("model.loads", {}), transition=transition),
         noise=NoiseModel(SelfNoiseModel(**self_noise) if broadband else None),
         **places.get("model", {}),
     )

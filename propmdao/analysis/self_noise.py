@@ -6,15 +6,14 @@ import jax.numpy as jnp
 from jax import Array
 from jax.typing import ArrayLike
 
-from propmdao.acoustics.broadband.boundary_layer import Trip
 from propmdao.acoustics.broadband.rotor import StripFlow, rotor_self_noise
 from propmdao.acoustics.broadband.section import Section
 from propmdao.acoustics.broadband.self_noise import SelfNoise, third_octave_centers
 from propmdao.aerodynamics.lattice.strips import Strips
-from propmdao.aerodynamics.sections.laws import AIR_VISCOSITY
 from propmdao.geometry.blade import Blade, SpanInterpolation
 from propmdao.geometry.trailing_edge import trailing_edge
-from propmdao.records.pytrees import Scalar
+from propmdao.records.models import SelfNoiseModel
+from propmdao.records.states import RotorState
 from propmdao.runtime.compilation import compiled
 
 #: Mid-band frequencies of the third octaves that are heard [Hz].

@@ -103,9 +103,7 @@ def analyze(
     sections = None
     if model.loads.viscous:
         polars = polars or polars_for(changed, transition=model.loads.transition)
-        sections = viscous_sections(
-            polars, blade, section_radii, float(model.loads.stall_delay)
-        )
+        sections = viscous_sections(polars, blade, section_radii, float(model.loads.stall_delay))
     case = RotorCase(
         RotorGeometry(nodes, radius, int(changed.n_blades)),
         point.at(0.0),

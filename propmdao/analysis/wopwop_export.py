@@ -8,10 +8,10 @@ from pathlib import Path
 import jax.numpy as jnp
 import numpy as np
 
-from propmdao.analysis.results import Analysis
 from propmdao.acoustics.kinematics.motion import translation
 from propmdao.acoustics.kinematics.reception import Observers
 from propmdao.acoustics.sources.rotors import Rotor, equally_spaced
+from propmdao.analysis.results import Analysis
 from propmdao.formats.wopwop.blade_files import blade_geometry
 from propmdao.formats.wopwop.geometry_file import write_geometry
 from propmdao.formats.wopwop.write_case import write_case
@@ -50,9 +50,7 @@ def write_blade(
         raise ValueError(f"{path}: {error.strerror or error}") from None
 
 
-def write_propeller_case(
-    analysis: Analysis, folder: str | Path, n_times: int = 1024
-) -> None:
+def write_propeller_case(analysis: Analysis, folder: str | Path, n_times: int = 1024) -> None:
     """Write a PSU-WOPWOP case of an analysed propeller, its observers flying along.
 
     Parameters
@@ -79,11 +77,7 @@ def write_propeller_case(
     velocity = np.array([0.0, 0.0, speed])
     write_case(
         folder,
-        [
-            Rotor(
-                equally_spaced(propeller.n_blades), omega, loads=analysis.loads.point_loads
-            )
-        ],
+        [Rotor(equally_spaced(propeller.n_blades), omega, loads=analysis.loads.point_loads)],
         [propeller_surface(propeller, fidelity.n_contour, fidelity.n_surface_span)],
         Observers(jnp.asarray(observers, float), jnp.asarray(velocity)),
         np.arange(n_times) * 2 * np.pi / (omega * n_times),

@@ -82,3 +82,34 @@ class Surroundings:
         """
         x, y, z = np.moveaxis(np.asarray(positions, float), -1, 0)
         return np.stack([-z, y, x] if self.level_flight else [x, y, z], axis=-1)
+
+
+def require_positions(observers: ArrayLike) -> Floats:
+    """Refuse observers that are no positions.
+
+    Parameters
+    ----------
+    observers : (n, 3) array_like
+        Positions from the rotor centre [m].
+
+    Returns
+    -------
+    (n, 3) array
+        The positions.
+
+    Raises
+    ------
+    ValueError
+        If they have another shape or are not finite; the message names what makes positions.
+    """
+    positions = np.asarray(observers, float)
+    if positions.ndim != 2 or positions.shape[1] != 3:
+        raise ValueError(
+            "observers must be positions from the rotor centre, an (n, 3) array [m]; this has the"
+            f" shape {positions.shape}: propmdao.arc(radius, elevation_deg) makes them, and point,"
+            " circle, hemisphere, grid"
+        )
+    if not np.isfinite(positions).all():
+        k = int(np.argmin(np.isfinite(positions).all(axis=1)))
+        raise ValueError(f"observer {k + 1} must be at a finite position; it is {positions[k]}")
+    return positions

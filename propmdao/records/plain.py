@@ -66,9 +66,7 @@ def from_plain(record: type[T], values: Any) -> T:
     names = {_KEYS.get(name, name): name for name in hints}
     for key in values:
         if key not in names:
-            raise ValueError(
-                f"{record.__name__} has no '{key}'; it has {', '.join(sorted(names))}"
-            )
+            raise ValueError(f"{record.__name__} has no '{key}'; it has {', '.join(sorted(names))}")
     fields = {names[key]: _restored(hints[names[key]], value) for key, value in values.items()}
     return record(**fields)
 

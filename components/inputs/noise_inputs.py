@@ -10,11 +10,13 @@ import openmdao.api as om
 from propmdao.acoustics.kinematics.limits import require_outside_rotor, require_subsonic_tip
 from propmdao.components.bases.jax_component import Arrays
 from propmdao.components.bases.nodes_comp import STATIC, OperatingPointsComp
+from propmdao.components.inputs.point_inputs import add_point_inputs, state_at
+from propmdao.records.states import RotorState
 from propmdao.records.units import RAD_PER_S
 
 
 def add_noise_inputs(component: OperatingPointsComp, observers: np.ndarray) -> None:
-    """Declare the inputs that `noise_at` reads.
+    """Declare the inputs that `noise_state` reads, and the observers.
 
     Parameters
     ----------
@@ -24,14 +26,12 @@ def add_noise_inputs(component: OperatingPointsComp, observers: np.ndarray) -> N
         Initial positions [m].
     """
     component.add_point_input("rpm", val=4000.0, units="rpm")
-    component.add_point_input("speed", val=0.0, units="m/s")
-    component.add_point_input("density", val=1.225, units="kg/m**3")
-    component.add_point_input("sound_speed", val=340.294, units="m/s")
+    add_point_inputs(component, ["speed", "density", "sound_speed"])
     component.add_input("observer_position", val=observers, units="m", tags=STATIC)
 
 
-def noise_at(inputs: Arrays) -> tuple[Any, Any, Any, Any, Any]:
-    """Arguments that all kinds of noise take, in their order.
+def noise_state(inputs: Arrays) -> RotorState:
+    """State of the rotor whose noise is heard.
 
     Parameters
     ----------
@@ -40,13 +40,10 @@ def noise_at(inputs: Arrays) -> tuple[Any, Any, Any, Any, Any]:
 
     Returns
     -------
-    rotation_speed, speed, density, sound_speed, observers : scalar arrays, (n_observers, 3) array
-        In rad/s, and as they are declared.
+    RotorState
+        For the sources of sound.
     """
-    rpm, speed, density, sound = (
-        inputs[name][0] for name in ("rpm", "speed", "density", "sound_speed")
-    )
-    return rpm * RAD_PER_S, speed, density, sound, inputs["observer_position"]
+    return state_at(inputs, inputs["rpm"][0] * RAD_PER_S)
 
 
 def check_rotor(inputs: Any, nodes: str) -> None:
@@ -55,9 +52,9 @@ def check_rotor(inputs: Any, nodes: str) -> None:
     Parameters
     ----------
     inputs : mapping
-        With those of `add_noise_inputs`.
+        Inputs of the component, those of `add_noise_inputs` among them.
     nodes : str
-        Input that holds points of the blade, (..., 3).
+        Name of the input that holds points of the blade, (..., 3).
 
     Raises
     ------
@@ -66,9 +63,8 @@ def check_rotor(inputs: Any, nodes: str) -> None:
     """
     x, y, _ = np.moveaxis(np.asarray(inputs[nodes]), -1, 0)
     radius = float(np.hypot(x, y).max())
-    omega, speed, _, sound, observers = noise_at(inputs)
     try:
-        require_subsonic_tip(radius, float(omega), float(speed), float(sound))
-        require_outside_rotor(observers, radius)
+        require_subsonic_tip(radius, noise_state(inputs))
+        require_outside_rotor(inputs["observer_position"], radius)
     except ValueError as error:
         raise om.AnalysisError(str(error)) from error

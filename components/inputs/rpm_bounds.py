@@ -2,16 +2,11 @@
 
 from __future__ import annotations
 
-from typing import Any
-
-import numpy as np
 from openmdao.utils.options_dictionary import OptionsDictionary
 
-from propmdao.aerodynamics.trim import LARGEST_TIP_SPEED, LEAST_TIP_SPEED
+from propmdao.aerodynamics.trim import Bounds, rotation_bounds
 from propmdao.components.bases.jax_component import Arrays
 from propmdao.records.units import RAD_PER_S
-
-_TIP_SPEEDS = np.array([LEAST_TIP_SPEED, LARGEST_TIP_SPEED])
 
 
 def declare_bounds(options: OptionsDictionary) -> None:
@@ -20,24 +15,24 @@ def declare_bounds(options: OptionsDictionary) -> None:
     Parameters
     ----------
     options : OptionsDictionary
-        Of a component or group.
+        Options of a component or group.
     """
     desc = "Lowest and highest rpm; None: by the speed of the tip."
     options.declare("rpm_bounds", None, types=tuple, allow_none=True, desc=desc)
 
 
-def given_bounds(options: OptionsDictionary) -> np.ndarray | None:
-    """Bounds that hold for every diameter.
+def given_bounds(options: OptionsDictionary) -> Bounds | None:
+    """Bounds that hold for every diameter and flight speed.
 
     Parameters
     ----------
     options : OptionsDictionary
-        Of a component.
+        Options of a component.
 
     Returns
     -------
-    (2,) array or None
-        Lowest and highest rotation speed [rad/s]; None where the diameter says.
+    Bounds or None
+        Lowest and highest rotation speed; None where diameter and flight speed say.
 
     Raises
     ------
@@ -49,22 +44,24 @@ def given_bounds(options: OptionsDictionary) -> np.ndarray | None:
     low, high = options["rpm_bounds"]
     if not 0.0 < low < high:
         raise ValueError(f"rpm_bounds must be positive and rising; they are {low:g}, {high:g}")
-    return np.array([low, high]) * RAD_PER_S
+    return Bounds(low * RAD_PER_S, high * RAD_PER_S)
 
 
-def bounds_at(inputs: Arrays, given: Any) -> Any:
-    """Bounds at a diameter.
+def bounds_at(inputs: Arrays, given: Bounds | None) -> Bounds:
+    """Bounds at an operating point.
 
     Parameters
     ----------
     inputs : dict of arrays
-        With the diameter.
-    given : (2,) array or None
-        Of `given_bounds`.
+        Inputs with the diameter and the flight speed.
+    given : Bounds or None
+        What `given_bounds` returned.
 
     Returns
     -------
-    (2,) array
-        Those that are given, or those of the tip's speed [rad/s].
+    Bounds
+        Those that are given, or those of the speed of the tip.
     """
-    return _TIP_SPEEDS / (0.5 * inputs["diameter"]) if given is None else given
+    if given is not None:
+        return given
+    return rotation_bounds(0.5 * inputs["diameter"][0], inputs["speed"][0])

@@ -1,0 +1,1 @@
+"""What components and groups are given: operating points, rotors, observers, options."""
