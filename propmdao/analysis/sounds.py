@@ -17,7 +17,7 @@ from propmdao.analysis.results import Analysis
 from propmdao.analysis.self_noise import BANDS_HZ
 from propmdao.formats.wav import Recording, write_wav
 
-MAX_CHANNELS = 64
+MAX_CHANNELS = 64  # more than any player has; programs that show sound hold them
 
 
 def pressure_record(analysis: Analysis, duration: float) -> npt.NDArray[np.float64]:
@@ -49,6 +49,25 @@ def pressure_record(analysis: Analysis, duration: float) -> npt.NDArray[np.float
     return record
 
 
+def require_channels(n_observers: int) -> None:
+    """Refuse more observers than a sound file holds.
+
+    Parameters
+    ----------
+    n_observers : int
+        Number of observers, a channel for each.
+
+    Raises
+    ------
+    ValueError
+        If there are more than `MAX_CHANNELS`.
+    """
+    if n_observers > MAX_CHANNELS:
+        raise ValueError(
+            f"a sound file is of at most {MAX_CHANNELS} observers; there are {n_observers}"
+        )
+
+
 def write_sound(
     path: str | Path, analysis: Analysis, duration: float, full_scale: float | None = None
 ) -> Recording:
@@ -75,11 +94,7 @@ def write_sound(
     ValueError
         If there are more than `MAX_CHANNELS` observers, or as in `pressure_record` and `write_wav`.
     """
-    if len(analysis.listening.observers) > MAX_CHANNELS:
-        raise ValueError(
-            f"a sound file is of at most {MAX_CHANNELS} observers; there are"
-            f" {len(analysis.listening.observers)}"
-        )
+    require_channels(len(analysis.listening.observers))
     record = pressure_record(analysis, duration)
     if full_scale is None:
         full_scale = common_full_scale(record)

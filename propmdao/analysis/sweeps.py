@@ -20,31 +20,12 @@ from propmdao.propeller.description import Propeller
 from propmdao.propeller.identity import checksum
 from propmdao.records.models import Model
 from propmdao.records.plain import to_plain
-from propmdao.records.quantities import (
-    ASKED,
-    BROADBAND_LEVELS,
-    CHANGE,
-    LEVELS,
-    POINT,
-    RESULTS,
-    Quantity,
-)
+from propmdao.records.quantities import BROADBAND_LEVELS, LEVELS, RESULTS, VARIABLES
 from propmdao.runtime.worker_processes import results_in_order, start_workers
 
 Point = dict[str, float]
 
 
-def _column(quantity: Quantity) -> str:
-    """Column of a value that a point may give: thrust is also the name of a result."""
-    return quantity.variable if quantity.name in RESULTS else quantity.json
-
-
-#: Values that a point may give, by their column.
-VARIABLES: dict[str, Quantity] = {
-    _column(quantity): quantity
-    for quantity in ASKED.values()
-    if quantity.record in (POINT, CHANGE) or quantity.name == "density"
-}
 _RESULTS = [name for name in ("rpm", *RESULTS) if name != "failure"]
 _WARNINGS = "warnings"
 

@@ -14,7 +14,7 @@ from propmdao.acoustics.sources.rotors import Rotor, equally_spaced
 from propmdao.analysis.results import Analysis
 from propmdao.formats.wopwop.blade_files import blade_geometry
 from propmdao.formats.wopwop.geometry_file import write_geometry
-from propmdao.formats.wopwop.write_case import write_case
+from propmdao.formats.wopwop.write_case import write_rotor_case
 from propmdao.geometry.meshes import propeller_surface
 from propmdao.propeller.description import Propeller
 from propmdao.records.fidelity import Fidelity
@@ -50,7 +50,7 @@ def write_blade(
         raise ValueError(f"{path}: {error.strerror or error}") from None
 
 
-def write_propeller_case(analysis: Analysis, folder: str | Path, n_times: int = 1024) -> None:
+def write_case(analysis: Analysis, folder: str | Path, n_times: int = 1024) -> None:
     """Write a PSU-WOPWOP case of an analysed propeller, its observers flying along.
 
     Parameters
@@ -75,7 +75,7 @@ def write_propeller_case(analysis: Analysis, folder: str | Path, n_times: int = 
         raise ValueError("a PSU-WOPWOP case needs observers; there are none")
     propeller, fidelity = analysis.changed_propeller, analysis.model.fidelity
     velocity = np.array([0.0, 0.0, speed])
-    write_case(
+    write_rotor_case(
         folder,
         [Rotor(equally_spaced(propeller.n_blades), omega, loads=analysis.loads.point_loads)],
         [propeller_surface(propeller, fidelity.n_contour, fidelity.n_surface_span)],

@@ -3,28 +3,27 @@
 from __future__ import annotations
 
 import argparse
-import sys
-import warnings
 from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from propmdao.commands.json_output import print_json
 from propmdao.commands.observer_options import (
-    add_broadband,
     add_observers,
     add_surroundings,
-    observers_of,
-    require_broadband,
-    surroundings_of,
+    air_of,
+    listening_of,
 )
 from propmdao.commands.options import (
+    add_asked,
     add_command,
-    add_operating_point,
     add_propeller,
+    asked_of,
     number,
 )
 from propmdao.commands.output_files import require_figures, require_writable, save_figures
+from propmdao.commands.warning_lines import warning_lines
+from propmdao.records.quantities import ASKED
 
 if TYPE_CHECKING:
     from propmdao.aerodynamics.sections.polars.table import PolarTable
@@ -57,6 +56,18 @@ Levels are in dB re 20 uPa, rms. SI units throughout. Exit status: 0, or 2 with 
 """
 
 
+#: What may be asked of the flow.
+ASKED_OPTIONS = (
+    "rpm",
+    "thrust",
+    "speed",
+    "density",
+    "twist_offset_deg",
+    "viscous",
+    "stall_delay",
+)
+
+
 def add_analyze(commands: argparse._SubParsersAction[Any]) -> None:
     """Add the command to a command line.
 
@@ -74,13 +85,7 @@ def add_analyze(commands: argparse._SubParsersAction[Any]) -> None:
         EXAMPLES,
     )
     add_propeller(command)
-    add_operating_point(command, several_rpm=True)
-    command.add_argument(
-        "--no-stall-delay",
-        action="store_true",
-        help="let the sections stall as in two dimensions; by default rotation delays it"
-        " (Du and Selig)",
-    )
+    add_asked(command, ASKED_OPTIONS, several_rpm=True)
     command.add_argument(
         "--polar",
         action="append",
@@ -90,7 +95,7 @@ def add_analyze(commands: argparse._SubParsersAction[Any]) -> None:
         help="polars of an airfoil of the propeller: files of XFOIL or XFLR5, one per Reynolds"
         " number, or one C81 file (ending .c81); may be repeated for other airfoils",
     )
-    add_broadband(command)
+    add_asked(command, ("broadband", "trip"))
     command.add_argument("--json", action="store_true", help="print JSON instead of tables")
     add_observers(command)
     add_surroundings(command)
@@ -99,7 +104,8 @@ def add_analyze(commands: argparse._SubParsersAction[Any]) -> None:
         "--wav",
         type=Path,
         metavar="FILE.wav",
-        help="sound of the observers, a channel for each, to be repeated without a click",
+        help="sound of the observers, a channel for each, 64 at most, to be repeated without a"
+        " click",
     )
     group.add_argument(
         "--seconds", type=number, default=5.0, metavar="S", help="its length [s], default 5"
@@ -122,9 +128,15 @@ def add_analyze(commands: argparse._SubParsersAction[Any]) -> None:
 
 def _analyze(options: argparse.Namespace) -> None:
     _check(options)
-    observers = observers_of(options)
-    surroundings = surroundings_of(options)
+    listening = listening_of(options)
+    _check_observers(options, len(listening.observers))
+    asked = asked_of(options) | air_of(options) | {"listening": listening}
+    points = [asked | {"rpm": rpm} for rpm in _rpm_values(options.rpm)]
     # Slow to import, so only once the arguments are known to be good.
+    from propmdao.analysis.request import Request
+
+    for point in points:
+        Request.of({"listening": listening}, **{k: v for k, v in point.items() if k in ASKED})
     from propmdao.aerodynamics.sections.polars.propeller_polars import polars_for
     from propmdao.analysis.single_point import analyze
     from propmdao.formats.propellers import load_propeller
@@ -138,44 +150,23 @@ def _analyze(options: argparse.Namespace) -> None:
                 f"--polar {airfoil}: {propeller.name} has no such airfoil; it has"
                 f" {', '.join(dict.fromkeys(names))}"
             )
-    with warnings.catch_warnings(record=True) as caught:
-        warnings.simplefilter("always")
-        polars = None if options.inviscid else polars_for(propeller, own)
-        found = [
-            analyze(
-                propeller,
-                rpm=rpm,
-                thrust=options.thrust,
-                speed=options.speed,
-                density=options.rho,
-                twist_offset_deg=options.twist_offset,
-                viscous=not options.inviscid,
-                stall_delay=not options.no_stall_delay,
-                polars=polars,
-                broadband=options.broadband,
-                trip=options.trip,
-                observers=observers,
-                surroundings=surroundings,
-            )
-            for rpm in _rpm_values(options.rpm)
-        ]
-    for message in dict.fromkeys(str(warning.message) for warning in caught):
-        print(f"propmdao analyze: warning: {message}", file=sys.stderr)
-    analyses = [one.to_dict() for one in found]
-    analyses[0] |= _write(options, found[0], propeller.name)
+    with warning_lines("analyze"):
+        polars = polars_for(propeller, own) if options.viscous else None
+        analyses = [analyze(propeller, polars=polars, **point) for point in points]
+    results = [analysis.to_dict() for analysis in analyses]
+    results[0] |= _write(options, analyses[0])
     if options.json:
-        print_json(analyses if _is_list(options.rpm) else analyses[0])
+        print_json(results if _is_list(options.rpm) else results[0])
     else:
         from propmdao.commands import report
 
-        report.print_analyses(propeller, options.twist_offset, analyses, str(surroundings))
+        report.print_analyses(results)
 
 
 def _check(options: argparse.Namespace) -> None:
     """Refuse options that do not go together, before the work."""
-    if options.inviscid and (options.polar or options.no_stall_delay):
+    if not options.viscous and (options.polar or not options.stall_delay):
         raise ValueError("--inviscid has no sections: --polar and --no-stall-delay do not go along")
-    require_broadband(options)
     placed = [*options.arc, *options.point, *options.circle, *options.hemisphere, *options.grid]
     for option, value in (("--wav", options.wav), ("--figures", options.figures)):
         if value is None:
@@ -192,7 +183,15 @@ def _check(options: argparse.Namespace) -> None:
         require_figures("--figures")
 
 
-def _write(options: argparse.Namespace, analysis: Analysis, name: str) -> dict[str, Any]:
+def _check_observers(options: argparse.Namespace, n_observers: int) -> None:
+    """Refuse more observers than a sound file holds, before the work."""
+    if options.wav is not None:
+        from propmdao.analysis.sounds import require_channels
+
+        require_channels(n_observers)
+
+
+def _write(options: argparse.Namespace, analysis: Analysis) -> dict[str, Any]:
     """Write sound and figures; what was written."""
     written: dict[str, Any] = {}
     if options.wav is not None:
@@ -201,10 +200,9 @@ def _write(options: argparse.Namespace, analysis: Analysis, name: str) -> dict[s
         sound = write_sound(options.wav, analysis, options.seconds, options.full_scale)
         written["sound"] = sound._asdict() | {"path": str(sound.path)}
     if options.figures is not None:
-        from propmdao.figures.analysis_figures import analysis_figures
+        from propmdao.figures.of_analysis import analysis_figures
 
-        figures = analysis_figures(analysis, name, options.hemisphere)
-        written["figures"] = save_figures(options.figures, figures)
+        written["figures"] = save_figures(options.figures, analysis_figures(analysis))
     return written
 
 

@@ -3,17 +3,18 @@
 from __future__ import annotations
 
 import argparse
-import dataclasses
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from propmdao.commands.observer_options import add_observers, observers_of
+from propmdao.commands.observer_options import add_observers, listening_of
 from propmdao.commands.options import (
+    add_asked,
     add_command,
-    add_operating_point,
     add_propeller,
+    asked_of,
     number,
 )
+from propmdao.commands.warning_lines import warning_lines
 
 if TYPE_CHECKING:
     from propmdao.propeller.description import Propeller
@@ -64,7 +65,8 @@ def add_export(commands: argparse._SubParsersAction[Any]) -> None:
     command.add_argument(
         "--section", type=number, metavar="R_OVER_R", help="where the section of a .dat file is"
     )
-    add_operating_point(command, required=False)
+    names = ("rpm", "thrust", "speed", "density", "twist_offset_deg", "viscous")
+    add_asked(command, names, required=False)
     add_observers(command)
 
 
@@ -88,15 +90,13 @@ def _export(options: argparse.Namespace) -> None:
         raise ValueError("a PSU-WOPWOP case holds loads: it needs --rpm or --thrust")
     # Slow to import, so only once the arguments are known to be good.
     from propmdao.formats.propellers import load_propeller
+    from propmdao.propeller.changes import Change
 
     propeller = load_propeller(options.propeller)
-    if options.twist_offset:
-        source = f"{propeller.source} Blade angle {options.twist_offset:+g} deg everywhere."
-        turned = propeller.beta_deg + options.twist_offset
-        propeller = dataclasses.replace(propeller, beta_deg=turned, source=source.strip())
     if not ending:
         _write_case(options, propeller)
         return
+    propeller = Change(options.twist_offset_deg).applied_to(propeller)
     try:
         said = _write_file(path, ending, propeller, options.section)
     except OSError as error:
@@ -121,34 +121,17 @@ def _write_file(path: Path, ending: str, propeller: Propeller, r_over_R: float) 
 
 
 def _write_case(options: argparse.Namespace, propeller: Propeller) -> None:
-    places = observers_of(options)
-    if not places:
+    listening = listening_of(options)
+    if not len(listening.observers):
         raise ValueError("a PSU-WOPWOP case needs observers, as with --arc 1.905 -45")
-    from propmdao.acoustics.kinematics.observers import point
-    from propmdao.analysis.single_point import SOUND_SPEED, analyze
-    from propmdao.analysis.wopwop_export import write_propeller_case
+    from propmdao.analysis.single_point import analyze
+    from propmdao.analysis.wopwop_export import write_case
 
-    found = analyze(
-        propeller,
-        rpm=options.rpm,
-        thrust=options.thrust,
-        speed=options.speed,
-        density=options.rho,
-        viscous=not options.inviscid,
-        observers=places,
-    )
-    write_propeller_case(
-        options.to,
-        propeller,
-        found.steady.point_loads,
-        rpm=found.rpm,
-        speed=found.speed,
-        density=found.density,
-        sound_speed=SOUND_SPEED,
-        observers=point(*found.observers.T),
-    )
-    thrust = float(found.steady.thrust)
+    with warning_lines("export"):
+        analysis = analyze(propeller, **asked_of(options), listening=listening)
+    write_case(analysis, options.to)
     print(
-        f"{options.to}: PSU-WOPWOP case of {propeller.name} at {found.rpm:.1f} rpm,"
-        f" {found.speed:g} m/s, thrust {thrust:.4g} N, {len(places)} observers"
+        f"{options.to}: PSU-WOPWOP case of {propeller.name} at {analysis.rpm:.1f} rpm,"
+        f" {analysis.point.speed:g} m/s, thrust {float(analysis.loads.thrust):.4g} N,"
+        f" {len(listening.observers)} observers"
     )

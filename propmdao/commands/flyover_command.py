@@ -5,20 +5,20 @@ from __future__ import annotations
 import argparse
 import csv
 import dataclasses
-import sys
-import warnings
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from propmdao.commands.json_output import print_json
-from propmdao.commands.observer_options import add_absorption, add_trip, air_of
+from propmdao.commands.observer_options import add_absorption, air_of
 from propmdao.commands.options import (
+    add_asked,
     add_command,
-    add_operating_point,
     add_propeller,
+    asked_of,
     number,
 )
 from propmdao.commands.output_files import require_figures, require_writable, save_figures
+from propmdao.commands.warning_lines import warning_lines
 
 if TYPE_CHECKING:
     from propmdao.analysis.flyover_results import Flyover
@@ -59,7 +59,7 @@ def add_flyover(commands: argparse._SubParsersAction[Any]) -> None:
         EXAMPLES,
     )
     add_propeller(command)
-    add_operating_point(command)
+    add_asked(command, ("rpm", "thrust", "speed", "density", "twist_offset_deg", "viscous"))
     command.add_argument(
         "--height", type=number, required=True, metavar="M", help="of the propeller over ground [m]"
     )
@@ -83,7 +83,7 @@ def add_flyover(commands: argparse._SubParsersAction[Any]) -> None:
         metavar="S",
         help="of what is heard [s]; default until six times the shortest distance, 20 s at least",
     )
-    add_trip(command)
+    add_asked(command, ("trip",))
     add_absorption(command)
     command.add_argument(
         "--no-absorption", action="store_true", help="without absorption, which is on by default"
@@ -116,49 +116,39 @@ def _flyover(options: argparse.Namespace) -> None:
         require_figures("--figures")
     if not options.speed > 0.0:
         raise ValueError(f"--speed of a flyover must be positive [m/s]; it is {options.speed:g}")
+    air = air_of(options)
+    asked = asked_of(options) | air | {"broadband": True}
     # Slow to import, so only once the arguments are known to be good.
     from propmdao.analysis.flyover_results import Flight
+    from propmdao.analysis.request import Request
     from propmdao.formats.propellers import load_propeller
 
-    if options.absorption is None:
-        options.absorption = []
     flight = Flight(
         options.height,
         options.sideline,
         options.microphone,
         options.duration,
-        None if options.no_absorption else air_of(options),
+        not options.no_absorption,
     )
+    Request.of(**asked)
     propeller = load_propeller(options.propeller)
-    turned = propeller.beta_deg + options.twist_offset
-    propeller = dataclasses.replace(propeller, beta_deg=turned)
     from propmdao.analysis.flyovers import fly_over
     from propmdao.analysis.single_point import analyze
 
-    with warnings.catch_warnings(record=True) as caught:
-        warnings.simplefilter("always")
-        analysis = analyze(
-            propeller,
-            rpm=options.rpm,
-            thrust=options.thrust,
-            speed=options.speed,
-            density=options.rho,
-            viscous=not options.inviscid,
-        )
-    for message in dict.fromkeys(str(warning.message) for warning in caught):
-        print(f"propmdao flyover: warning: {message}", file=sys.stderr)
-    heard = fly_over(propeller, analysis, flight, trip=options.trip, sound=options.wav is not None)
-    point = analysis.to_dict()
-    for key in ("observers", "surroundings", "trip"):
-        del point[key]
-    result = point | {"flight": dataclasses.asdict(flight), "trip": options.trip}
-    result |= heard.to_dict() | _write(options, heard, flight.miss_distance)
+    with warning_lines("flyover"):
+        analysis = analyze(propeller, **asked)
+    flyover = fly_over(analysis, flight, sound=options.wav is not None)
+    result = analysis.to_dict()
+    for key in ("observers", "listening"):  # who listens is in the flight
+        del result[key]
+    result |= {"flight": dataclasses.asdict(flight)} | flyover.to_dict()
+    result |= _write(options, flyover, flight, float(analysis.state.air.sound_speed))
     if options.json:
         print_json(result)
     else:
         from propmdao.commands import report
 
-        report.print_flyover(propeller, options.twist_offset, result)
+        report.print_flyover(result)
 
 
 def _write(options: argparse.Namespace, heard: Flyover, distance: float) -> dict[str, Any]:

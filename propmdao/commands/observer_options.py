@@ -1,22 +1,22 @@
-"""Options that commands share: observers, broadband noise, ground and air."""
+"""Options that commands share: observers, ground and air."""
 
 from __future__ import annotations
 
 import argparse
+import itertools
 import math
 from typing import TYPE_CHECKING, Any
 
 from propmdao.commands.options import number, number_or_range
 
 if TYPE_CHECKING:
-    from propmdao.records.air import Air
-    from propmdao.records.listening import Surroundings
+    from propmdao.records.listening import Listening
 
 MAX_OBSERVERS = 20_000
 
 
 def add_observers(command: argparse.ArgumentParser) -> None:
-    """Add the options that place observers; `observers_of` reads them.
+    """Add the options that place observers; `listening_of` reads them.
 
     Parameters
     ----------
@@ -70,56 +70,8 @@ def add_observers(command: argparse.ArgumentParser) -> None:
     )
 
 
-def add_broadband(command: argparse.ArgumentParser) -> None:
-    """Add the options of broadband noise; `require_broadband` checks them.
-
-    Parameters
-    ----------
-    command : argparse parser
-        What they are added to.
-    """
-    command.add_argument(
-        "--broadband", action="store_true", help="add the broadband self-noise to the tones"
-    )
-    add_trip(command)
-
-
-def add_trip(command: argparse.ArgumentParser) -> None:
-    """Add the option of tripped boundary layers.
-
-    Parameters
-    ----------
-    command : argparse parser
-        What it is added to.
-    """
-    command.add_argument(
-        "--trip",
-        choices=("none", "light", "heavy"),
-        default="none",
-        help="tripped boundary layers in the broadband noise, default none. Untripped ones shed"
-        " vortices, which rule at the small angles of cruise; a rough or dusty blade sheds none",
-    )
-
-
-def require_broadband(options: argparse.Namespace) -> None:
-    """Refuse tripped boundary layers where there is no broadband noise.
-
-    Parameters
-    ----------
-    options : argparse.Namespace
-        With the options of `add_broadband`.
-
-    Raises
-    ------
-    ValueError
-        If there is none.
-    """
-    if options.trip != "none" and not options.broadband:
-        raise ValueError(f"--trip {options.trip} is about broadband noise: add --broadband")
-
-
 def add_surroundings(command: argparse.ArgumentParser) -> None:
-    """Add the options of ground and air; `surroundings_of` reads them.
+    """Add the options of ground and air; `listening_of` and `air_of` read them.
 
     Parameters
     ----------
@@ -161,31 +113,46 @@ def add_absorption(group: argparse._ActionsContainer) -> None:
     )
 
 
-def observers_of(options: argparse.Namespace) -> list[tuple[float, float, float]]:
-    """Observers of a command line.
+def listening_of(options: argparse.Namespace) -> Listening:
+    """Observers, ground and air of a command line.
 
     Parameters
     ----------
     options : argparse.Namespace
-        With the options of `add_observers`.
+        What was typed, with the options of `add_observers` and perhaps of `add_surroundings`.
 
     Returns
     -------
-    list of (radius, elevation_deg, azimuth_deg)
-        Those of --hemisphere last.
+    Listening
+        Observers in groups by the option that made them.
 
     Raises
     ------
     ValueError
-        When one is incomplete or out of range, or they are too many.
+        When an option is incomplete or out of range, or there are too many observers.
     """
     # Slow to import, so only once the arguments are known to be good.
     import numpy as np
 
-    from propmdao.acoustics.kinematics.observers import circle, directions, grid, hemisphere
-    from propmdao.records.listening import Surroundings
+    from propmdao.acoustics.kinematics.observers import circle, grid, hemisphere, point
+    from propmdao.records.listening import Listening, ObserverGroup, Surroundings
 
-    found: list[tuple[float, float, float]] = []
+    surroundings = Surroundings(
+        getattr(options, "ground", None),
+        getattr(options, "level", False),
+        getattr(options, "absorption", None) is not None,
+    )
+    positions: list[np.ndarray] = []
+    groups: list[ObserverGroup] = []
+
+    def add(kind: Any, placed: np.ndarray) -> None:
+        same = sum(group.kind == kind for group in groups)
+        groups.append(ObserverGroup(f"{kind} {same + 1}" if same else kind, kind, len(placed)))
+        positions.append(placed)
+        n_observers = sum(group.n for group in groups)
+        if n_observers > MAX_OBSERVERS:
+            raise ValueError(f"{n_observers} observers are more than the {MAX_OBSERVERS} allowed")
+
     for values in options.arc:
         (radius, *others), *elevations = map(_values, values)
         if others or not elevations:
@@ -193,92 +160,64 @@ def observers_of(options: argparse.Namespace) -> list[tuple[float, float, float]
                 f"--arc {radius:g} needs one radius and then at least one elevation, as in"
                 " --arc 1.905 -45 0"
             )
-        found += [(radius, elevation, 0.0) for some in elevations for elevation in some]
+        add("arc", point(radius, [elevation for some in elevations for elevation in some]))
     for place in options.point:
-        found += [
-            (radius, elevation, azimuth)
-            for radius in _values(place[0])
-            for elevation in _values(place[1])
-            for azimuth in _values(place[2])
-        ]
-    positions = []
+        every = itertools.product(*map(_values, place))
+        add("point", point(*np.transpose(list(every))))
     for radius, elevation, n in options.circle:
         if n != int(n) or not 1 <= n <= MAX_OBSERVERS:
             raise ValueError(f"--circle needs a whole number N of observers; it is {n:g}")
-        positions.append(circle(radius, int(n), elevation))
+        add("circle", circle(radius, int(n), elevation))
     # What is named by the ground is turned into the rotor's axes.
-    axes = Surroundings(level_flight=getattr(options, "level", False))
     for coordinates in options.grid:
         n = math.prod(len(_values(q)) for q in coordinates)
         if n > MAX_OBSERVERS:
             raise ValueError(f"--grid has {n} observers, at most {MAX_OBSERVERS} are allowed")
-        positions.append(axes.from_ground_axes(grid(*coordinates)))
+        add("grid", surroundings.from_ground_axes(grid(*coordinates)))
     for radius, step in options.hemisphere:
         if 0.0 < step < 1.0:
             raise ValueError(f"--hemisphere needs a STEP of 1 deg or more; it is {step:g}")
-        positions.append(axes.from_ground_axes(hemisphere(radius, step)))
-    for placed in positions:
-        # Rounding leaves 1e-15 deg where zero is meant.
-        seen = (np.round(q, 9).tolist() for q in directions(placed))
-        found += list(zip(*seen, strict=True))
-    if len(found) > MAX_OBSERVERS:
-        raise ValueError(f"{len(found)} observers are more than the {MAX_OBSERVERS} allowed")
-    return found
+        add("hemisphere", surroundings.from_ground_axes(hemisphere(radius, step)))
+    observers = np.concatenate([np.zeros((0, 3)), *positions])
+    return Listening(observers, surroundings, tuple(groups))
 
 
-def surroundings_of(options: argparse.Namespace) -> Surroundings:
-    """Ground and air of a command line.
-
-    Parameters
-    ----------
-    options : argparse.Namespace
-        With the options of `add_surroundings`.
-
-    Returns
-    -------
-    Surroundings
-        Ground and air.
-
-    Raises
-    ------
-    ValueError
-        When a value is out of range.
-    """
-    from propmdao.records.listening import Surroundings
-
-    return Surroundings(options.ground, options.level, air_of(options))
-
-
-def air_of(options: argparse.Namespace) -> Air | None:
+def air_of(options: argparse.Namespace) -> dict[str, float]:
     """Air that absorbs, of a command line.
 
     Parameters
     ----------
     options : argparse.Namespace
-        With the option of `add_absorption`.
+        What was typed, with the option of `add_absorption`.
 
     Returns
     -------
-    Air or None
-        None where it is not asked for.
+    dict
+        Temperature [K], relative humidity and pressure [Pa] by the names of `propmdao.analyze`, as
+        far as they are given.
 
     Raises
     ------
     ValueError
-        When there are too many values.
+        When there are too many values, or absorption is not known in such air.
     """
-    from propmdao.records.air import Air
-
-    given: list[float] | None = options.absorption
-    if given is None:
-        return None
-    if len(given) > 3:
+    values: list[float] = options.absorption or []
+    if len(values) > 3:
         raise ValueError(
             "--absorption takes temperature, humidity and pressure at most; it has"
-            f" {len(given)} values"
+            f" {len(values)} values"
         )
-    celsius, percent, pressure = given + [15.0, 70.0, 101325.0][len(given) :]
-    return Air(273.15 + celsius, percent / 100.0, pressure)
+    names = ("temperature", "relative_humidity", "pressure")
+    air = dict(zip(names, values, strict=False))
+    if "temperature" in air:
+        air["temperature"] += 273.15
+    if "relative_humidity" in air:
+        air["relative_humidity"] /= 100.0
+    if options.absorption is not None:
+        from propmdao.records.air import Air, require_known_air
+
+        require_known_air(Air(**air))
+    return air
 
 
 def _values(value: float | list[float]) -> list[float]:

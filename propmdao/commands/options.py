@@ -5,19 +5,12 @@ from __future__ import annotations
 import argparse
 import math
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from typing import Any
 
-MAX_RPM_VALUES = 1000
+from propmdao.records.quantities import ASKED
 
-#: Placeholder and help of the options of an operating point.
-OPERATING_POINT = {
-    "--rpm": ("N", "rotation speed [rev/min]"),
-    "--thrust": ("N", "find the rotation speed that gives this thrust [N]"),
-    "--speed": ("M_S", "flight speed along the axis [m/s], default 0: hover"),
-    "--rho": ("KG_M3", "air density [kg/m3], default 1.225"),
-    "--twist-offset": ("DEG", "added to the blade angle everywhere [deg], default 0"),
-}
+MAX_RPM_VALUES = 1000
 
 
 def add_command(
@@ -151,33 +144,59 @@ def add_propeller(command: argparse.ArgumentParser) -> None:
     )
 
 
-def add_operating_point(
-    command: argparse.ArgumentParser, several_rpm: bool = False, required: bool = True
+def add_asked(
+    command: argparse._ActionsContainer,
+    names: Iterable[str],
+    several_rpm: bool = False,
+    required: bool = True,
 ) -> None:
-    """Add the options of one operating point.
+    """Add options for what may be asked, as the table of quantities has them.
 
     Parameters
     ----------
-    command : argparse parser
-        What they are added to.
+    command : argparse parser or group
+        What they are added to; `asked_of` reads them.
+    names : iterable of str
+        Names in the table.
     several_rpm : bool
         Whether there may be ranges and several values of rpm: then it is a list of both.
     required : bool
-        Whether rpm or thrust has to be given.
+        Whether rpm or thrust has to be given, where they are among the names.
     """
-    drive = command.add_mutually_exclusive_group(required=required)
-    for option, (unit, text) in OPERATING_POINT.items():
-        how: dict[str, Any] = {"type": number}
-        if option == "--rpm" and several_rpm:
-            how = {"type": number_or_range, "action": "append"}
+    drive: argparse._ActionsContainer | None = None
+    for name in names:
+        quantity = ASKED[name]
+        parser, how = command, dict[str, Any](dest=name, default=quantity.default)
+        text = quantity.help
+        if name in ("rpm", "thrust"):
+            drive = drive or command.add_mutually_exclusive_group(required=required)
+            parser = drive
+        if not quantity.placeholder:
+            how |= {"action": "store_const", "const": not quantity.default}
+        elif quantity.placeholder.startswith("{"):
+            how["choices"] = quantity.placeholder.strip("{}").split(",")
+        else:
+            how |= {"metavar": quantity.placeholder, "type": number}
+        if name == "rpm" and several_rpm:
+            how |= {"type": number_or_range, "action": "append"}
             text += (
                 ", or a range START:STOP:STEP that includes STOP; may be repeated. Ranges and"
                 " repetition give a list, of one result per value"
             )
-        if option not in ("--rpm", "--thrust"):
-            how["default"] = 1.225 if option == "--rho" else 0.0
-        to = drive if option in ("--rpm", "--thrust") else command
-        to.add_argument(option, metavar=unit, help=text, **how)
-    command.add_argument(
-        "--inviscid", action="store_true", help="without the polars of the sections: no drag"
-    )
+        parser.add_argument(quantity.option, help=text, **how)
+
+
+def asked_of(options: argparse.Namespace) -> dict[str, Any]:
+    """Values of all options of `add_asked` that a command has.
+
+    Parameters
+    ----------
+    options : argparse.Namespace
+        What was typed.
+
+    Returns
+    -------
+    dict
+        By the names of `propmdao.analyze`.
+    """
+    return {name: getattr(options, name) for name in ASKED if hasattr(options, name)}

@@ -11,6 +11,7 @@ from rich.console import Console
 from rich.table import Table
 
 from propmdao.propeller.description import Propeller
+from propmdao.records.listening import Surroundings
 
 # What the numbers leave out stands below them, where it is read.
 INVISCID = "Inviscid lattice: no profile drag, so torque and power are low and eta is high."
@@ -41,80 +42,51 @@ def print_catalog(propellers: Iterable[Propeller]) -> None:
     console.print("Where the numbers come from, and what is assumed: propmdao list --json")
 
 
-def print_analyses(
-    propeller: Propeller,
-    twist_offset_deg: float,
-    analyses: Sequence[dict[str, Any]],
-    surroundings: str,
-) -> None:
+def print_analyses(analyses: Sequence[dict[str, Any]]) -> None:
     """Print the operating points of one propeller and the levels at their observers.
 
     Parameters
     ----------
-    propeller : Propeller
-        What was analysed.
-    twist_offset_deg : float
-        What was added to its blade angle [deg]; a calibrated blade is not the published one.
     analyses : sequence of dict
         Results with the keys of ``propmdao analyze --json``.
-    surroundings : str
-        Ground and air.
     """
     console = Console()
     first = analyses[0]
-    console.print(
-        f"{propeller.name}: {propeller.n_blades} blades, diameter {propeller.diameter:.4g} m,"
-        f" speed {first['speed']:.4g} m/s, air {first['rho']:.4g} kg/m3",
-        highlight=False,
+    _print_propeller(
+        console, first, f"speed {first['speed']:.4g} m/s, air {first['rho']:.4g} kg/m3"
     )
-    if twist_offset_deg:
-        console.print(f"Twist offset {twist_offset_deg:+.4g} deg: not the geometry as described.")
     console.print(_operating_points(analyses))
-    heard = [observer for analysis in analyses for observer in analysis["observers"]]
-    if heard:
+    if any(analysis["observers"] for analysis in analyses):
         console.print(_levels(analyses))
-        trip = "" if first["trip"] is None else f", blades {TRIPPED[first['trip']]}"
-        console.print(f"Levels: {surroundings}{trip}.", highlight=False)
+        broadband = first["model"]["noise"]["broadband"]
+        trip = "" if broadband is None else f", blades {TRIPPED[broadband['trip']]}"
+        around = Surroundings(**first["listening"]["surroundings"])
+        console.print(f"Levels: {around}{trip}.", highlight=False)
+        if broadband is None:
+            console.print(TONES_ONLY)
     else:
         console.print("No observers: --arc RADIUS ELEVATION... adds their noise.\n")
-    for analysis in analyses:
-        if not analysis["converged"]:
-            console.print(
-                f"NOT CONVERGED at {analysis['rpm']:.1f} rpm, do not use these numbers: "
-                f"{analysis['failure']}."
-            )
-    if not first["viscous"]:
-        console.print(INVISCID)
-    if heard and "broadband" not in heard[0]:
-        console.print(TONES_ONLY)
+    _print_doubts(console, analyses)
     print_files(first)
 
 
-def print_flyover(propeller: Propeller, twist_offset_deg: float, result: dict[str, Any]) -> None:
+def print_flyover(result: dict[str, Any]) -> None:
     """Print the levels of a flyover.
 
     Parameters
     ----------
-    propeller : Propeller
-        What flies.
-    twist_offset_deg : float
-        What was added to its blade angle [deg].
     result : dict
         With the keys of ``propmdao flyover --json``.
     """
     console = Console()
     flight, history = result["flight"], result["history"]
-    console.print(
-        f"{propeller.name}: {result['rpm']:.1f} rpm, thrust {result['thrust']:.4g} N, speed"
+    _print_propeller(
+        console,
+        result,
+        f"{result['rpm']:.1f} rpm, thrust {result['thrust']:.4g} N, speed"
         f" {result['speed']:.4g} m/s, {flight['height']:g} m above the ground",
-        highlight=False,
     )
-    if twist_offset_deg:
-        console.print(f"Twist offset {twist_offset_deg:+.4g} deg: not the geometry as described.")
-    if not result["converged"]:
-        console.print(f"NOT CONVERGED, do not use these numbers: {result['failure']}.")
-    if not result["viscous"]:
-        console.print(INVISCID)
+    _print_doubts(console, [result])
     table = _table()
     for heading in ("", "loudest\ndBA", "SEL\ndBA", "EPNL\nEPNdB"):
         table.add_column(heading, justify="right" if heading else "left")
@@ -126,13 +98,41 @@ def print_flyover(propeller: Propeller, twist_offset_deg: float, result: dict[st
     if result["epnl_failure"]:
         console.print(f"No EPNL: {result['epnl_failure']}.", highlight=False)
     loudest = max(history, key=lambda step: float(step["total_dba"]))
+    trip = result["model"]["noise"]["broadband"]["trip"]
     console.print(
         f"Loudest {loudest['time']:+.1f} s from overhead, heard over {loudest['distance']:.1f} m"
         f" from elevation {loudest['elevation_deg']:+.0f} deg of the rotor plane; half seconds,"
-        f" {len(history)} of them. Blades {TRIPPED[result['trip']]}.",
+        f" {len(history)} of them. Blades {TRIPPED[trip]}.",
         highlight=False,
     )
     print_files(result)
+
+
+def _print_propeller(console: Console, result: dict[str, Any], condition: str) -> None:
+    """Print what was analysed, and at what condition."""
+    propeller, change = result["propeller"], result["change"]
+    console.print(
+        f"{propeller['name']}: {propeller['n_blades']} blades, diameter"
+        f" {propeller['diameter']:.4g} m, {condition}",
+        highlight=False,
+    )
+    # A calibrated blade is not the published one.
+    if change["twist_offset_deg"]:
+        console.print(
+            f"Twist offset {change['twist_offset_deg']:+.4g} deg: not the geometry as described."
+        )
+
+
+def _print_doubts(console: Console, results: Sequence[dict[str, Any]]) -> None:
+    """Print what keeps numbers from being used."""
+    for result in results:
+        if not result["converged"]:
+            console.print(
+                f"NOT CONVERGED at {result['rpm']:.1f} rpm, do not use these numbers: "
+                f"{result['failure']}."
+            )
+    if not results[0]["model"]["loads"]["viscous"]:
+        console.print(INVISCID)
 
 
 def print_files(result: dict[str, Any]) -> None:
@@ -181,18 +181,18 @@ def _levels(analyses: Sequence[dict[str, Any]]) -> Table:
         "elevation_deg": ("elev.\ndeg", ".4g"),
         "azimuth_deg": ("azim.\ndeg", ".4g"),
         "spl_bpf_db": ("BPF\ndB", ".1f"),
-        "oaspl_db": ("OASPL\ndB", ".1f"),
+        "oaspl_db": ("tones\ndB", ".1f"),
         "oaspl_thickness_db": ("thick-\nness\ndB", ".1f"),
         "oaspl_loading_db": ("loading\ndB", ".1f"),
         "oaspl_broadband_db": ("broad-\nband\ndB", ".1f"),
-        "oaspl_dba": ("total\ndBA", ".1f"),
+        "oaspl_total_db": ("total\ndB", ".1f"),
+        "oaspl_dba": ("tones\ndBA", ".1f"),
+        "oaspl_total_dba": ("total\ndBA", ".1f"),
     }
-    heard = [observer for analysis in analyses for observer in analysis["observers"]]
-    if "broadband" not in heard[0]:
-        columns["oaspl_dba"] = ("tones\ndBA", ".1f")
-    if not any(observer["azimuth_deg"] for observer in heard):
+    observers = [observer for analysis in analyses for observer in analysis["observers"]]
+    if not any(observer["azimuth_deg"] for observer in observers):
         del columns["azimuth_deg"]
-    columns = {key: column for key, column in columns.items() if key in heard[0]}
+    columns = {key: column for key, column in columns.items() if key in observers[0]}
     table.add_column("rpm", justify="right")
     for heading, _ in columns.values():
         table.add_column(heading, justify="right")

@@ -7,20 +7,19 @@ from collections.abc import Callable, Sequence
 from typing import Any
 
 from propmdao.commands.observer_options import (
-    add_broadband,
     add_observers,
     add_surroundings,
-    observers_of,
-    require_broadband,
-    surroundings_of,
+    air_of,
+    listening_of,
 )
 from propmdao.commands.options import (
-    OPERATING_POINT,
+    add_asked,
     add_command,
     add_propeller,
     number,
     number_or_range,
 )
+from propmdao.records.quantities import VARIABLES
 
 SWEEP_DESCRIPTION = """\
 A propeller at many points into a table, a row per point: a map of thrust, torque and noise over
@@ -46,18 +45,9 @@ diameter, n_blades. SI units, angles in degrees. Exit status: 0, or 2 with one l
 when every point has failed.
 """
 
-#: Option, variable of a point, unit or placeholder, help.
-OPTIONS = (
-    ("--rpm", "rpm", *OPERATING_POINT["--rpm"]),
-    ("--thrust", "thrust_required", *OPERATING_POINT["--thrust"]),
-    ("--speed", "speed", *OPERATING_POINT["--speed"]),
-    ("--rho", "rho", *OPERATING_POINT["--rho"]),
-    ("--twist-offset", "twist_offset_deg", *OPERATING_POINT["--twist-offset"]),
-    ("--chord-factor", "chord_factor", "F", "times the chord everywhere, default 1"),
-    ("--diameter", "diameter", "M", "stretches the whole blade [m]; default the propeller's"),
-    ("--blades", "n_blades", "B", "number of blades; default the propeller's"),
-)
 MAX_POINTS = 100_000
+#: What is asked of all points alike.
+ASKED_OF_ALL = ("viscous", "stall_delay", "broadband", "trip")
 
 
 def add_sweep(commands: argparse._SubParsersAction[Any]) -> None:
@@ -77,10 +67,18 @@ def add_sweep(commands: argparse._SubParsersAction[Any]) -> None:
         SWEEP_EXAMPLES,
     )
     add_propeller(command)
-    for option, variable, unit, text in OPTIONS:
-        command.add_argument(option, dest=variable, metavar=unit, action="append", help=text)
+    for variable, quantity in VARIABLES.items():
+        command.add_argument(
+            quantity.option,
+            dest=variable,
+            metavar=quantity.placeholder,
+            action="append",
+            help=quantity.help,
+        )
     command.add_argument(
-        "--points", metavar="FILE", help="points from a CSV file, each with every value given else"
+        "--points",
+        metavar="FILE",
+        help="points from a CSV file, combined with every value of the other options",
     )
     command.add_argument(
         "--samples", type=int, metavar="N", help="draw N points in the ranges LOWEST:HIGHEST"
@@ -88,10 +86,7 @@ def add_sweep(commands: argparse._SubParsersAction[Any]) -> None:
     command.add_argument(
         "--seed", type=int, default=1, help="of the drawn points, default 1; same seed, same points"
     )
-    command.add_argument(
-        "--inviscid", action="store_true", help="without the polars of the sections"
-    )
-    add_broadband(command)
+    add_asked(command, ASKED_OF_ALL)
     command.add_argument(
         "--workers", type=int, default=1, metavar="N", help="processes that analyse, default 1"
     )
@@ -106,11 +101,10 @@ def add_sweep(commands: argparse._SubParsersAction[Any]) -> None:
 
 
 def _sweep(options: argparse.Namespace) -> None:
-    observers = observers_of(options)
-    surroundings = surroundings_of(options)
-    require_broadband(options)
+    listening = listening_of(options)
     if options.workers < 1:
         raise ValueError(f"--workers must be 1 or more; it is {options.workers}")
+    asked = {name: getattr(options, name) for name in ASKED_OF_ALL} | air_of(options)
     # Slow to import, so only once the arguments are known to be good.
     from propmdao.analysis.sweeps import sweep
     from propmdao.formats.propellers import load_propeller
@@ -123,12 +117,10 @@ def _sweep(options: argparse.Namespace) -> None:
             propeller,
             points,
             options.out,
-            observers=observers,
-            viscous=not options.inviscid,
-            broadband=options.broadband,
-            trip=options.trip,
-            surroundings=surroundings,
             n_workers=options.workers,
+            observers=listening.observers,
+            surroundings=listening.surroundings,
+            **asked,
         )
     except WorkerLostError as error:
         raise ValueError(f"{error} The rows so far are kept: run again to go on") from error
@@ -143,7 +135,7 @@ def _sweep(options: argparse.Namespace) -> None:
 def _points(options: argparse.Namespace) -> list[dict[str, float]]:
     from propmdao.analysis.sweeps import grid, latin_hypercube, read_points
 
-    given = {variable: getattr(options, variable) for _, variable, _, _ in OPTIONS}
+    given = {variable: getattr(options, variable) for variable in VARIABLES}
     given = {variable: texts for variable, texts in given.items() if texts}
     drawn: list[dict[str, float]] = [{}]
     if options.samples is not None:

@@ -4,14 +4,13 @@ from __future__ import annotations
 
 import argparse
 import csv
-import json
-import sys
-import warnings
 from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from propmdao.commands.json_output import print_json
 from propmdao.commands.options import add_command
+from propmdao.commands.warning_lines import warning_lines
 
 if TYPE_CHECKING:
     from propmdao.analysis.foreign_case import CaseResult
@@ -128,19 +127,13 @@ def _wopwop(options: argparse.Namespace) -> None:
     # Slow to import, so only once it is wanted.
     from propmdao.analysis.foreign_case import run_case
 
-    with warnings.catch_warnings(record=True) as caught:
-        warnings.simplefilter("always")
-        try:
-            results = run_case(options.folder)
-        finally:
-            for message in dict.fromkeys(str(warning.message) for warning in caught):
-                print(f"propmdao wopwop: warning: {message}", file=sys.stderr)
+    with warning_lines("wopwop"):
+        results = run_case(options.folder)
     if options.out is not None:
         write_pressure_csv(options.out, results)
     groups = levels(results)
     if options.json:
-        json.dump(groups, sys.stdout, indent=2, allow_nan=False)
-        print()
+        print_json(groups)
     else:
         _print(groups)
 

@@ -168,3 +168,16 @@ RESULTS = {quantity.name: quantity for quantity in _RESULTS}
 LEVELS = {quantity.name: quantity for quantity in _LEVELS}
 #: Levels at an observer that broadband noise adds, by name.
 BROADBAND_LEVELS = {quantity.name: quantity for quantity in _BROADBAND_LEVELS}
+
+
+def _column(quantity: Quantity) -> str:
+    """Column of a value that a point of a sweep gives: thrust is also the name of a result."""
+    return quantity.variable if quantity.name in RESULTS else quantity.json
+
+
+#: Values that a point of a sweep may give, by their column.
+VARIABLES = {
+    _column(quantity): quantity
+    for quantity in ASKED.values()
+    if quantity.record in (POINT, CHANGE) or quantity.name == "density"
+}
