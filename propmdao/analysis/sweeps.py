@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, Any
 from scipy.stats import qmc
 from tqdm import tqdm
 
-from propmdao.analysis.result_table import ResultTable, table_files
+from propmdao.formats.result_table import ResultTable, table_files
 from propmdao.propeller.description import Propeller
 from propmdao.runtime.worker_processes import results_in_order, start_workers
 

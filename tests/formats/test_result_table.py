@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from propmdao.analysis.result_table import ResultTable, table_files
+from propmdao.formats.result_table import ResultTable, table_files
 
 POINT = {"name": "blade, new", "rpm": 0.1 + 0.2}
 
