@@ -11,6 +11,7 @@ import numpy as np
 from propmdao.aerodynamics.sections.polars.high_angle import FloatArray
 from propmdao.aerodynamics.sections.polars.table import PolarError, PolarTable
 from propmdao.aerodynamics.sections.polars.user_table import Polar, table_from_polars
+from propmdao.runtime.input_files import read_text
 
 _COLUMNS = ("alpha", "cl", "cd", "cm")
 _NUMBER = r"([-+]?[\d.]+(?:[eE][-+]?\d+)?)"
@@ -184,11 +185,8 @@ def _fields(
 
 
 def _lines(path: str | os.PathLike[str]) -> list[str]:
-    """Lines of a text file."""
-    try:
-        return Path(path).read_text(encoding="utf-8", errors="replace").splitlines()
-    except OSError as error:
-        raise PolarError(f"{path}: cannot be read: {error.strerror}") from error
+    """Lines of a text file, whose names of sections may be in any encoding."""
+    return read_text(path, PolarError, undecodable="replace").splitlines()
 
 
 def _number(text: str, where: str) -> float:

@@ -11,9 +11,9 @@ from typing import Any
 
 import tomli_w
 
-from propmdao.formats.text import read_text
 from propmdao.propeller.checks import PropellerError
 from propmdao.propeller.description import DISTRIBUTIONS, Propeller
+from propmdao.runtime.input_files import read_text
 
 
 def read_toml(path: str | os.PathLike[str]) -> Propeller:

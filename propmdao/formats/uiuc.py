@@ -10,6 +10,7 @@ import numpy as np
 
 from propmdao.propeller.checks import PropellerError
 from propmdao.propeller.description import Propeller
+from propmdao.runtime.input_files import read_text, table_rows
 
 
 def read_uiuc_geometry(
@@ -44,25 +45,8 @@ def read_uiuc_geometry(
         If the file cannot be read or a value is out of range; the message begins with the file.
     """
     path = Path(path)
-    try:
-        lines = path.read_text(encoding="utf-8").splitlines()
-    except OSError as error:
-        raise PropellerError(f"{path}: cannot be read: {error.strerror}") from error
-    except UnicodeDecodeError as error:
-        raise PropellerError(f"{path}: is not text in UTF-8") from error
-    rows = []
-    for number, line in enumerate(lines, start=1):
-        if not line.strip():
-            continue
-        try:
-            r, chord, beta = (float(field) for field in line.replace(",", " ").split())
-        except ValueError:
-            if number == 1:
-                continue
-            raise PropellerError(
-                f"{path}, line {number}: three numbers r/R c/R beta expected, not '{line.strip()}'"
-            ) from None
-        rows.append((r, chord, beta))
+    text = read_text(path, PropellerError)
+    rows = table_rows(text, 3, "three numbers r/R c/R beta", PropellerError, str(path))
     r_over_R, c_over_R, beta_deg = np.array(rows).reshape(-1, 3).T
     try:
         return Propeller(

@@ -7,6 +7,8 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from propmdao.runtime.input_files import read_bytes
+
 MAGIC = 42
 
 Floats = NDArray[np.float32]
@@ -32,11 +34,7 @@ class Reader:
 
     def __init__(self, path: Path) -> None:
         self.path = path
-        try:
-            self._data = path.read_bytes()
-        except OSError as error:
-            raise WopwopFileError(f"{path}: {error.strerror or error}") from None
-        self._at = 0
+        self._data = read_bytes(path, WopwopFileError, complaint=str(path))
         orders = [o for o in "<>" if self._data[:4] == np.array(MAGIC, f"{o}i4").tobytes()]
         if not orders:
             raise WopwopFileError(

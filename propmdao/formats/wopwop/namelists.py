@@ -14,6 +14,7 @@ from typing import Any
 import f90nml  # type: ignore[import-untyped]
 
 from propmdao.formats.wopwop.binary import WopwopFileError
+from propmdao.runtime.input_files import read_text
 
 #: Of angles that change periodically, A1 ... and B1 ...
 HARMONICS = range(1, 10)
@@ -115,10 +116,7 @@ def read_namelists(path: str | Path) -> list[Group]:
         If the file is missing or holds no namelist.
     """
     path = Path(path)
-    try:
-        text = path.read_text(encoding="latin-1")
-    except OSError as error:
-        raise WopwopFileError(f"{path}: {error.strerror or error}") from None
+    text = read_text(path, WopwopFileError, complaint=str(path), encoding="latin-1")
     try:
         with contextlib.redirect_stdout(io.StringIO()):  # it prints its tables on broken quotes
             parsed = f90nml.reads(text)
