@@ -8,6 +8,8 @@ import re
 from collections.abc import Callable
 from typing import Any
 
+from propmdao.formats.endings import PROPELLER_READERS, described
+
 MAX_RPM_VALUES = 1000
 
 #: Placeholder and help of the options of an operating point.
@@ -147,7 +149,7 @@ def add_propeller(command: argparse.ArgumentParser) -> None:
     command.add_argument(
         "propeller",
         metavar="PROPELLER",
-        help="name from 'propmdao list', or path of a propeller file (TOML)",
+        help=f"name from 'propmdao list', or path of a file: {described(PROPELLER_READERS)}",
     )
 
 

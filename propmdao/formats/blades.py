@@ -19,7 +19,11 @@ from propmdao.records.fidelity import Fidelity
 _SECTION_POINTS = 161
 
 
-def export_stl(path: str | Path, propeller: Propeller, fidelity: Fidelity) -> int:
+def export_stl(
+    path: str | Path,
+    propeller: Propeller,
+    fidelity: Fidelity = Fidelity(),  # noqa: B008 - frozen
+) -> int:
     """Write the skin of all blades as a binary STL file, in metres.
 
     Parameters

@@ -11,12 +11,41 @@ import numpy as np
 from propmdao.aerodynamics.sections.polars.high_angle import FloatArray
 from propmdao.aerodynamics.sections.polars.table import PolarError, PolarTable
 from propmdao.aerodynamics.sections.polars.user_table import Polar, table_from_polars
+from propmdao.formats.endings import POLAR_READERS
 from propmdao.runtime.input_files import read_text
 
 _COLUMNS = ("alpha", "cl", "cd", "cm")
 _NUMBER = r"([-+]?[\d.]+(?:[eE][-+]?\d+)?)"
 #: Width of a number and numbers per line after the first field of a C81 file.
 _WIDTH, _PER_LINE = 7, 9
+
+
+def load_polars(*paths: str | os.PathLike[str]) -> PolarTable:
+    """Read the polars of one section from files of any format that is read.
+
+    Parameters
+    ----------
+    *paths : path
+        Files, whose endings choose among `propmdao.formats.endings.POLAR_READERS`.
+
+    Returns
+    -------
+    PolarTable
+        The table of one section.
+
+    Raises
+    ------
+    PolarError
+        If a file cannot be read or is wrong, a Reynolds number comes twice, or one of several files
+        is of a format that holds all of a section.
+    """
+    readers = [POLAR_READERS.get(Path(path).suffix.lower(), POLAR_READERS[""]) for path in paths]
+    for path, reader in zip(paths, readers, strict=True):
+        if len(paths) > 1 and not reader.several:
+            others = ", ".join(str(other) for other in paths if other is not path)
+            raise PolarError(f"{path}: a {reader.contents} stands alone; there is also {others}")
+    table: PolarTable = readers[0](*paths) if paths else table_from_polars([])
+    return table
 
 
 def read_polar(path: str | os.PathLike[str]) -> Polar:

@@ -40,7 +40,7 @@ def read_toml(path: str | os.PathLike[str]) -> Propeller:
     return propeller_from_text(text, str(path), path.parent)
 
 
-def write_toml(path: str | os.PathLike[str], propeller: Propeller) -> None:
+def write_toml(path: str | os.PathLike[str], propeller: Propeller) -> int:
     """Write a propeller file that `read_toml` reads back to the same propeller.
 
     Parameters
@@ -48,7 +48,12 @@ def write_toml(path: str | os.PathLike[str], propeller: Propeller) -> None:
     path : path
         Where to write; .dat files in its folder or below are named relative to it.
     propeller : Propeller
-        What is written.
+        Propeller to write.
+
+    Returns
+    -------
+    int
+        Number of stations.
     """
     folder = Path(path).absolute().parent
     lines = [tomli_w.dumps({"name": propeller.name, "diameter": propeller.diameter}).rstrip()]
@@ -69,6 +74,7 @@ def write_toml(path: str | os.PathLike[str], propeller: Propeller) -> None:
     lines.append(f"airfoils = [ {', '.join(tables)} ]")
     lines.append(tomli_w.dumps({"source": propeller.source}))
     Path(path).write_text("\n".join(lines), encoding="utf-8")
+    return propeller.r_over_R.size
 
 
 def propeller_from_text(text: str, label: str, folder: Path | None) -> Propeller:

@@ -10,7 +10,7 @@ import pytest
 
 from propmdao.aerodynamics.sections.polars.table import PolarError, PolarTable, section_coefficients
 from propmdao.aerodynamics.sections.polars.user_table import Polar, table_from_polars
-from propmdao.formats.polars import read_c81, read_polar, read_polars
+from propmdao.formats.polars import load_polars, read_c81, read_polar, read_polars
 
 XFLR5 = """xflr5 v6.61
 
@@ -197,3 +197,15 @@ def test_a_wrong_c81_file_is_told_in_one_line(tmp_path: Path) -> None:
             read_c81(written(tmp_path, wrong, "flat.c81"))
         assert str(caught.value).startswith(f"{tmp_path / 'flat.c81'}: ")
         assert "\n" not in str(caught.value)
+
+
+def test_the_ending_says_which_format_a_polar_has(tmp_path: Path) -> None:
+    table = written(tmp_path, c81(), "flat.C81")
+    np.testing.assert_array_equal(load_polars(table).values, read_c81(table).values)
+    polar = written(tmp_path, XFLR5 + "".join(rows()), "flat.pol")
+    np.testing.assert_array_equal(load_polars(polar).values, read_polars(polar).values)
+    with pytest.raises(PolarError) as caught:
+        load_polars(polar, table)
+    assert str(caught.value) == f"{table}: a C81 file stands alone; there is also {polar}"
+    with pytest.raises(PolarError, match="at least one polar"):
+        load_polars()
