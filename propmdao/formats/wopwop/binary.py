@@ -1,8 +1,13 @@
-"""Binary streams of PSU-WOPWOP: 32-bit words without record markers, either byte order."""
+"""Binary files of PSU-WOPWOP: 32-bit words without record markers, in either byte order.
+
+Geometry and loading files begin alike, which is here too.
+"""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,12 +15,58 @@ from numpy.typing import NDArray
 from propmdao.runtime.input_files import read_bytes
 
 MAGIC = 42
+TIMES = {1: "constant", 2: "periodic", 3: "aperiodic"}
+GRIDS = {1: "structured", 2: "unstructured"}
+CENTRED = {1: "at nodes", 2: "at faces"}
+CONSTANT, PERIODIC, APERIODIC = TIMES
+STRUCTURED, UNSTRUCTURED = GRIDS
+_AT_NODES, _AT_FACES = CENTRED
 
 Floats = NDArray[np.float32]
 
 
 class WopwopFileError(ValueError):
     """A PSU-WOPWOP file that cannot be read, in one line that names the file and why."""
+
+
+class FileKind(NamedTuple):
+    """A kind of file.
+
+    Attributes
+    ----------
+    name : str
+        Name of the kind, for messages.
+    number : int
+        Number of the kind in the file.
+    text_sizes : tuple of int
+        Lengths of the texts at the beginning.
+    """
+
+    name: str
+    number: int
+    text_sizes: tuple[int, ...]
+
+
+GEOMETRY = FileKind("geometry", 1, (32, 1024))
+LOADING = FileKind("loading", 2, (1024,))
+
+
+class Layout(NamedTuple):
+    """What a file says of all its zones at once.
+
+    Attributes
+    ----------
+    grid : int
+        Kind of their grids, a key of `GRIDS`.
+    time : int
+        Kind of their dependence on time, a key of `TIMES`.
+    at_faces : bool
+        True if normals or loads belong to faces, False if to nodes.
+    """
+
+    grid: int
+    time: int
+    at_faces: bool
 
 
 class Reader:
@@ -67,11 +118,6 @@ class Reader:
         (found,) = self.ints(1)
         if found != wanted:
             raise self.error(f"{what} must be {wanted}; it is {found}")
-
-    def version(self) -> None:
-        """Refuse files of another version than 1.0."""
-        self.expect(1, "version")
-        self.expect(0, "second number of the version")
 
     def choose(self, options: dict[int, str], what: str) -> int:
         """Return the next integer if it is one of the options, refuse the file otherwise."""
@@ -140,3 +186,68 @@ class Writer:
     def save(self, path: Path) -> None:
         """Write the file."""
         path.write_bytes(b"".join(self._parts))
+
+
+def read_opening(file: Reader, kind: FileKind) -> tuple[list[str], int, Layout]:
+    """Read the beginning of a file, which both kinds have alike.
+
+    Parameters
+    ----------
+    file : Reader
+        Reader at the version.
+    kind : FileKind
+        Kind of file that is expected, `GEOMETRY` or `LOADING`.
+
+    Returns
+    -------
+    texts : list of str
+        Texts of the kind.
+    n_zones : int
+        Number of zones of the geometry.
+    layout : Layout
+        Layout of the zones.
+
+    Raises
+    ------
+    WopwopFileError
+        If the file is of another version or kind, or has a layout that is not known.
+    """
+    file.expect(1, "version")
+    file.expect(0, "second number of the version")
+    texts = [file.text(size) for size in kind.text_sizes]
+    file.expect(kind.number, f"file type ({kind.number} is a {kind.name})")
+    n_zones = file.count("number of zones")
+    grid = file.choose(GRIDS, "grid")
+    time = file.choose(TIMES, f"time dependence of the {kind.name}")
+    at_faces = file.choose(CENTRED, f"place of the {kind.name}'s values") == _AT_FACES
+    return texts, n_zones, Layout(grid, time, at_faces)
+
+
+def write_opening(
+    out: Writer, kind: FileKind, texts: Sequence[str], n_zones: int, layout: Layout
+) -> None:
+    """Write the beginning of a file; the counterpart of `read_opening`.
+
+    Parameters
+    ----------
+    out : Writer
+        Writer of a new file.
+    kind : FileKind
+        Kind of the file, `GEOMETRY` or `LOADING`.
+    texts : sequence of str
+        Texts of the kind.
+    n_zones : int
+        Number of zones of the geometry.
+    layout : Layout
+        Layout of the zones.
+
+    Raises
+    ------
+    ValueError
+        If a text is too long.
+    """
+    out.ints(1, 0)  # version
+    for text, size in zip(texts, kind.text_sizes, strict=True):
+        out.text(text, size)
+    centred = _AT_FACES if layout.at_faces else _AT_NODES
+    out.ints(kind.number, n_zones, layout.grid, layout.time, centred)
