@@ -69,8 +69,8 @@ def read_polar(path: str | os.PathLike[str]) -> Polar:
         its values cannot be right; the message begins with the file and names line and column.
     """
     lines = _lines(path)
-    found = (k for k, line in enumerate(lines) if "alpha" in line.lower().split())
-    start = next(found, None)
+    starts = (k for k, line in enumerate(lines) if "alpha" in line.lower().split())
+    start = next(starts, None)
     if start is None:
         raise PolarError(f"{path}: no line names the columns alpha, CL, CD, CM")
     header = "\n".join(lines[:start])
@@ -122,17 +122,17 @@ def read_polars(*paths: str | os.PathLike[str]) -> PolarTable:
     Parameters
     ----------
     *paths : path
-        Files as `read_polar` takes them.
+        Files that `read_polar` can read.
 
     Returns
     -------
     PolarTable
-        One section.
+        The table of one section.
 
     Raises
     ------
     PolarError
-        As `read_polar`, or if a Reynolds number comes twice.
+        If a file is wrong, as `read_polar` finds, or if a Reynolds number comes twice.
     """
     return table_from_polars([read_polar(path) for path in paths])
 
@@ -150,8 +150,8 @@ def read_c81(path: str | os.PathLike[str]) -> PolarTable:
     Returns
     -------
     PolarTable
-        One section at the file's lowest Mach number, which `section_coefficients` corrects; the
-        same at all Reynolds numbers, which the format does not hold.
+        The table of one section at the file's lowest Mach number, which `section_coefficients`
+        corrects, and the same at all Reynolds numbers, which the format does not hold.
 
     Raises
     ------

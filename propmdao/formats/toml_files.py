@@ -46,7 +46,7 @@ def write_toml(path: str | os.PathLike[str], propeller: Propeller) -> int:
     Parameters
     ----------
     path : path
-        Where to write; .dat files in its folder or below are named relative to it.
+        File to write; .dat files in its folder or below are named relative to it.
     propeller : Propeller
         Propeller to write.
 
@@ -85,9 +85,9 @@ def propeller_from_text(text: str, label: str, folder: Path | None) -> Propeller
     text : str
         TOML.
     label : str
-        What messages about it begin with.
+        Name of the file, with which messages begin.
     folder : Path or None
-        That .dat paths are relative to.
+        Folder that .dat paths are relative to; None leaves them as they are.
 
     Returns
     -------
@@ -97,7 +97,7 @@ def propeller_from_text(text: str, label: str, folder: Path | None) -> Propeller
     Raises
     ------
     PropellerError
-        As in `read_toml`.
+        If the text is wrong in any of the ways that `read_toml` lists.
     """
     try:
         data = tomllib.loads(text)

@@ -52,7 +52,7 @@ LOADING = FileKind("loading", 2, (1024,))
 
 
 class Layout(NamedTuple):
-    """What a file says of all its zones at once.
+    """Grids and times of all zones of a file, which are alike.
 
     Attributes
     ----------
@@ -93,9 +93,9 @@ class Reader:
                 f"{self._data[:4].hex(' ') or 'nothing'}, not with {MAGIC} as a 32-bit integer"
             )
         self.byte_order = orders[0]
-        #: What fills up texts: blanks or zero bytes.
+        #: Byte that fills up texts, a blank or zero.
         self.padding = b" "
-        self._at = 4
+        self._position = 4
 
     def ints(self, n: int) -> list[int]:
         """Return the next n integers."""
@@ -107,7 +107,7 @@ class Reader:
         return np.frombuffer(raw, f"{self.byte_order}f4").reshape(shape).astype(np.float32)
 
     def text(self, n: int) -> str:
-        """Return a text of n bytes without what fills it up."""
+        """Return a text of n bytes without the bytes that fill it up."""
         raw = self._take(n)
         if raw.endswith(b"\0"):
             self.padding = b"\0"
@@ -115,28 +115,28 @@ class Reader:
 
     def expect(self, wanted: int, what: str) -> None:
         """Refuse the file if the next integer is not the one wanted."""
-        (found,) = self.ints(1)
-        if found != wanted:
-            raise self.error(f"{what} must be {wanted}; it is {found}")
+        (value,) = self.ints(1)
+        if value != wanted:
+            raise self.error(f"{what} must be {wanted}; it is {value}")
 
     def choose(self, options: dict[int, str], what: str) -> int:
         """Return the next integer if it is one of the options, refuse the file otherwise."""
-        (found,) = self.ints(1)
-        if found not in options:
+        (value,) = self.ints(1)
+        if value not in options:
             known = ", ".join(f"{number} ({meaning})" for number, meaning in options.items())
-            raise self.error(f"{what} must be one of {known}; it is {found}")
-        return found
+            raise self.error(f"{what} must be one of {known}; it is {value}")
+        return value
 
     def count(self, what: str) -> int:
         """Return the next integer, a count of at least 1."""
-        (found,) = self.ints(1)
-        if found < 1:
-            raise self.error(f"{what} must be at least 1; it is {found}")
-        return found
+        (value,) = self.ints(1)
+        if value < 1:
+            raise self.error(f"{what} must be at least 1; it is {value}")
+        return value
 
     def end(self) -> None:
         """Refuse a file that goes on after all that its header promised."""
-        if left := len(self._data) - self._at:
+        if left := len(self._data) - self._position:
             raise self.error(f"{left} bytes more than its header says")
 
     def error(self, message: str) -> WopwopFileError:
@@ -144,12 +144,13 @@ class Reader:
         return WopwopFileError(f"{self.path}: {message}")
 
     def _take(self, n: int) -> bytes:
-        if self._at + n > len(self._data):
+        start, stop = self._position, self._position + n
+        if stop > len(self._data):
             raise self.error(
-                f"truncated: {self._at + n} bytes or more expected, the file has {len(self._data)}"
+                f"truncated: {stop} bytes or more expected, the file has {len(self._data)}"
             )
-        self._at += n
-        return self._data[self._at - n : self._at]
+        self._position = stop
+        return self._data[start:stop]
 
 
 class Writer:

@@ -1,4 +1,4 @@
-"""Pressure histories that PSU-WOPWOP has written: PLOT3D of a grid of observers, Tecplot of one."""
+"""Pressures that PSU-WOPWOP has written: PLOT3D files for a grid of observers, Tecplot for one."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ class PressureHistories:
     Attributes
     ----------
     position : (n_observers, n_times, 3) array
-        Of each observer at each time [m]; NaN if the file does not say.
+        Positions of each observer at each time [m]; NaN if the file does not hold them.
     time : (n_observers, n_times) array
         Observer times [s].
     thickness, loading, total : (n_observers, n_times) arrays
@@ -45,7 +45,7 @@ def read_pressure(stem: str | Path) -> PressureHistories:
     Returns
     -------
     PressureHistories
-        Observers with i fastest, then j.
+        Pressures of the observers, those with i fastest, then j.
 
     Raises
     ------
@@ -88,13 +88,13 @@ def _by_name(
     path: Path, labels: list[str], functions: NDArray[np.float64]
 ) -> list[NDArray[np.float64]]:
     """Return time, thickness, loading and total pressure out of functions in any order."""
-    found = []
+    parts = []
     for word in ("time", "thickness", "loading", "total"):
-        which = [k for k, label in enumerate(labels) if word in label.lower()]
-        if not which:
+        indices = [k for k, label in enumerate(labels) if word in label.lower()]
+        if not indices:
             raise WopwopFileError(f"{path}: no {word!r} among {', '.join(labels)}")
-        found.append(functions[which[0]])
-    return found
+        parts.append(functions[indices[0]])
+    return parts
 
 
 def _table(path: Path, n_sizes: int) -> tuple[list[int], NDArray[np.float64]]:

@@ -86,7 +86,7 @@ def layout_of(zones: Sequence[Zone], at_faces: bool) -> Layout:
     Returns
     -------
     Layout
-        Their layout.
+        Layout that all of them have.
 
     Raises
     ------

@@ -23,12 +23,12 @@ def airfoil_from_coordinates(name: str, x: FloatArray, z: FloatArray, source: st
     Parameters
     ----------
     name : str
-        What the section is called.
+        Name of the section.
     x, z : (n,) arrays
         Contour of unit chord from the trailing edge over the upper side to the leading edge at
         the origin and back along the lower side (Selig's order).
     source : str
-        Where the coordinates come from.
+        Origin of the coordinates.
 
     Returns
     -------
