@@ -12,7 +12,6 @@ import openmdao.api as om
 from openmdao.core.driver import RecordingDebugging
 from tqdm import tqdm
 
-from propmdao.analysis.result_table import ResultTable, Value, table_files
 from propmdao.components.drivers.checkpoint import SAME_MODEL
 from propmdao.components.drivers.runs.candidate import Array
 from propmdao.components.drivers.runs.model_run import put_outputs, said
@@ -21,6 +20,7 @@ from propmdao.components.drivers.runs.model_runner import (
     declare_runner_options,
     model_runner,
 )
+from propmdao.formats.result_table import ResultTable, Value, table_files
 
 Sample = dict[str, dict[str, Any]]
 

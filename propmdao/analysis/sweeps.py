@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import io
 import itertools
 import os
 import warnings
@@ -15,12 +16,13 @@ from scipy.stats import qmc
 from tqdm import tqdm
 
 from propmdao.analysis.request import Asked, Request
-from propmdao.analysis.result_table import ResultTable, table_files
+from propmdao.formats.result_table import ResultTable, table_files
 from propmdao.propeller.description import Propeller
 from propmdao.propeller.identity import checksum
 from propmdao.records.models import Model
 from propmdao.records.plain import to_plain
 from propmdao.records.quantities import BROADBAND_LEVELS, LEVELS, RESULTS, VARIABLES
+from propmdao.runtime.input_files import read_text
 from propmdao.runtime.worker_processes import results_in_order, start_workers
 
 Point = dict[str, float]
@@ -92,12 +94,10 @@ def read_points(path: str | os.PathLike[str]) -> list[Point]:
     ValueError
         When there is no such file, a column is no variable, or a cell is not a number.
     """
-    try:
-        with open(path, newline="", encoding="utf-8-sig") as file:
-            reader = csv.DictReader(file)
-            names, rows = reader.fieldnames or [""], list(reader)
-    except (OSError, UnicodeDecodeError) as error:
-        raise ValueError(f"points cannot be read from '{path}': {error}") from error
+    complaint = f"points cannot be read from '{path}'"
+    text = read_text(path, ValueError, complaint=complaint, encoding="utf-8-sig")
+    reader = csv.DictReader(io.StringIO(text))
+    names, rows = reader.fieldnames or [""], list(reader)
     for name in names:
         if name not in VARIABLES:
             raise ValueError(

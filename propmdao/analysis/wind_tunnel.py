@@ -6,7 +6,6 @@ import dataclasses
 import os
 import tomllib
 from collections.abc import Callable
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -15,6 +14,7 @@ from scipy.optimize import root_scalar
 
 from propmdao.analysis.single_point import analyze
 from propmdao.propeller.description import Propeller
+from propmdao.runtime.input_files import read_text
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -117,9 +117,9 @@ def read_wind_tunnel(path: str | os.PathLike[str]) -> WindTunnel:
     MeasurementError
         If the file cannot be read, or lacks something; the message begins with the file.
     """
-    path = Path(path)
+    text = read_text(path, MeasurementError)
     try:
-        data = tomllib.loads(path.read_text(encoding="utf-8"))
+        data = tomllib.loads(text)
         static = _points({"J": np.zeros(len(data["static"]["rpm"])), **data["static"]})
         runs = [_points({**run, "rpm": [run["rpm"]] * len(run["J"])}) for run in data["run"]]
         every = {
@@ -129,8 +129,6 @@ def read_wind_tunnel(path: str | os.PathLike[str]) -> WindTunnel:
         return WindTunnel(data["source"], static, Points(**every))
     except KeyError as error:
         raise MeasurementError(f"{path}: {error} is missing") from error
-    except OSError as error:
-        raise MeasurementError(f"{path}: cannot be read: {error.strerror}") from error
     except (TypeError, ValueError) as error:
         raise MeasurementError(f"{path}: {error}") from error
 

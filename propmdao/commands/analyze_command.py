@@ -23,6 +23,7 @@ from propmdao.commands.options import (
 )
 from propmdao.commands.output_files import require_figures, require_writable, save_figures
 from propmdao.commands.warning_lines import warning_lines
+from propmdao.formats.endings import POLAR_READERS, described
 from propmdao.records.quantities import ASKED
 
 if TYPE_CHECKING:
@@ -92,8 +93,8 @@ def add_analyze(commands: argparse._SubParsersAction[Any]) -> None:
         nargs="+",
         default=[],
         metavar=("AIRFOIL", "FILE"),
-        help="polars of an airfoil of the propeller: files of XFOIL or XFLR5, one per Reynolds"
-        " number, or one C81 file (ending .c81); may be repeated for other airfoils",
+        help="polars of an airfoil of the propeller, in files with the endings"
+        f" {described(POLAR_READERS)}; may be repeated for other airfoils",
     )
     add_asked(command, ("broadband", "trip"))
     command.add_argument("--json", action="store_true", help="print JSON instead of tables")
@@ -206,20 +207,17 @@ def _write(options: argparse.Namespace, analysis: Analysis) -> dict[str, Any]:
     return written
 
 
-def _own_polars(given: Sequence[Sequence[str]]) -> dict[str, PolarTable]:
+def _own_polars(options: Sequence[Sequence[str]]) -> dict[str, PolarTable]:
     """Tables of the files of every ``--polar``, by airfoil."""
-    from propmdao.formats.polars import read_c81, read_polars
+    from propmdao.formats.polars import load_polars
 
     tables = {}
-    for airfoil, *files in given:
+    for airfoil, *files in options:
         if not files:
             raise ValueError(f"--polar {airfoil} has no file")
         if airfoil in tables:
             raise ValueError(f"--polar {airfoil} is given twice: name all of its files at once")
-        c81 = [file for file in files if file.lower().endswith(".c81")]
-        if c81 and len(files) > 1:
-            raise ValueError(f"--polar {airfoil}: a C81 file stands alone; there is also {files}")
-        tables[airfoil] = read_c81(c81[0]) if c81 else read_polars(*files)
+        tables[airfoil] = load_polars(*files)
     return tables
 
 

@@ -15,17 +15,16 @@ from propmdao.commands.options import (
     number,
 )
 from propmdao.commands.warning_lines import warning_lines
+from propmdao.formats.endings import PROPELLER_WRITERS
 
 if TYPE_CHECKING:
     from propmdao.propeller.description import Propeller
 
-DESCRIPTION = """\
+_FILES = "\n".join(f"  {ending:<5}  {form.contents}" for ending, form in PROPELLER_WRITERS.items())
+DESCRIPTION = f"""\
 A propeller in a file that other programs read. The ending says which:
 
-  .stl   closed surface of all blades, outward, binary, in metres (no hub)
-  .toml  propeller file, as propmdao reads it
-  .csv   chord, blade angle, thickness, camber, sweep and rake at the stations
-  .dat   section at --section, x and z over chord in Selig's order
+{_FILES}
   none   folder of a PSU-WOPWOP case: blade, loads at --rpm or --thrust, observers
 """
 
@@ -39,7 +38,6 @@ examples:
 Axes: z toward thrust, blade 1 along x, rotation from x to y. Exit status: 0, or 2 with one line on
 stderr.
 """
-_ENDINGS = (".stl", ".toml", ".csv", ".dat")
 
 
 def add_export(commands: argparse._SubParsersAction[Any]) -> None:
@@ -63,7 +61,7 @@ def add_export(commands: argparse._SubParsersAction[Any]) -> None:
         "--to", type=Path, required=True, metavar="FILE", help="what is written or replaced"
     )
     command.add_argument(
-        "--section", type=number, metavar="R_OVER_R", help="where the section of a .dat file is"
+        "--section", type=number, metavar="R_OVER_R", help="r/R of the section in a .dat file"
     )
     names = ("rpm", "thrust", "speed", "density", "twist_offset_deg", "viscous")
     add_asked(command, names, required=False)
@@ -72,17 +70,21 @@ def add_export(commands: argparse._SubParsersAction[Any]) -> None:
 
 def _export(options: argparse.Namespace) -> None:
     path, ending = options.to, options.to.suffix.lower()
-    if ending and ending not in _ENDINGS:
+    writer = PROPELLER_WRITERS.get(ending)
+    if ending and writer is None:
         raise ValueError(
             f"--to {path}: there is no export to {ending!r}; a file ends in"
-            f" {', '.join(_ENDINGS)}, a PSU-WOPWOP case in nothing"
+            f" {', '.join(PROPELLER_WRITERS)}, a PSU-WOPWOP case in nothing"
         )
     if not path.absolute().parent.is_dir():
         raise ValueError(f"--to {path}: there is no folder {path.parent}")
     if path.is_dir() and ending:
         raise ValueError(f"--to {path}: it is a folder")
-    if (options.section is None) == (ending == ".dat"):
-        raise ValueError("a .dat file is of one section, and only that has --section R_OVER_R")
+    if (options.section is not None) != (writer is not None and writer.of_section):
+        sections = " or ".join(e for e, form in PROPELLER_WRITERS.items() if form.of_section)
+        raise ValueError(
+            f"a {sections} file is of one section, and only that has --section R_OVER_R"
+        )
     driven = options.rpm is not None or options.thrust is not None
     if ending and driven:
         raise ValueError(f"a {ending} file holds no loads: --rpm and --thrust do not go along")
@@ -93,31 +95,16 @@ def _export(options: argparse.Namespace) -> None:
     from propmdao.propeller.changes import Change
 
     propeller = load_propeller(options.propeller)
-    if not ending:
+    if writer is None:
         _write_case(options, propeller)
         return
     propeller = Change(options.twist_offset_deg).applied_to(propeller)
+    section = [options.section] if writer.of_section else []
     try:
-        said = _write_file(path, ending, propeller, options.section)
+        n_items = writer(path, propeller, *section)
     except OSError as error:
         raise ValueError(f"--to {path}: {error.strerror or error}") from None
-    print(f"{path}: {propeller.name}, {said}")
-
-
-def _write_file(path: Path, ending: str, propeller: Propeller, r_over_R: float) -> str:
-    """Write a file by its ending; what it holds."""
-    from propmdao.formats import blades
-    from propmdao.formats.toml_files import write_toml
-    from propmdao.records.fidelity import Fidelity
-
-    if ending == ".stl":
-        return f"{blades.export_stl(path, propeller, Fidelity())} triangles, metres"
-    if ending == ".csv":
-        return f"{blades.export_csv(path, propeller)} stations"
-    if ending == ".dat":
-        return f"{blades.export_section(path, propeller, r_over_R)} points"
-    write_toml(path, propeller)
-    return f"{propeller.r_over_R.size} stations"
+    print(f"{path}: {propeller.name}, {n_items} {writer.items}")
 
 
 def _write_case(options: argparse.Namespace, propeller: Propeller) -> None:

@@ -8,6 +8,7 @@ import re
 from collections.abc import Callable, Iterable
 from typing import Any
 
+from propmdao.formats.endings import PROPELLER_READERS, described
 from propmdao.records.quantities import ASKED
 
 MAX_RPM_VALUES = 1000
@@ -140,7 +141,7 @@ def add_propeller(command: argparse.ArgumentParser) -> None:
     command.add_argument(
         "propeller",
         metavar="PROPELLER",
-        help="name from 'propmdao list', or path of a propeller file (TOML)",
+        help=f"name from 'propmdao list', or path of a file: {described(PROPELLER_READERS)}",
     )
 
 

@@ -19,17 +19,21 @@ from propmdao.records.fidelity import Fidelity
 _SECTION_POINTS = 161
 
 
-def export_stl(path: str | Path, propeller: Propeller, fidelity: Fidelity) -> int:
+def export_stl(
+    path: str | Path,
+    propeller: Propeller,
+    fidelity: Fidelity = Fidelity(),  # noqa: B008 - frozen
+) -> int:
     """Write the skin of all blades as a binary STL file, in metres.
 
     Parameters
     ----------
     path : str or Path
-        Where to.
+        File to write.
     propeller : Propeller
-        The described blade.
+        The propeller.
     fidelity : Fidelity
-        Numbers of points of the surface.
+        Fidelity, of which `n_contour` and `n_surface_span` count here.
 
     Returns
     -------
@@ -48,9 +52,9 @@ def export_csv(path: str | Path, propeller: Propeller) -> int:
     Parameters
     ----------
     path : str or Path
-        Where to.
+        File to write.
     propeller : Propeller
-        The described blade.
+        The propeller.
 
     Returns
     -------
@@ -84,11 +88,11 @@ def export_section(path: str | Path, propeller: Propeller, r_over_R: float) -> i
     Parameters
     ----------
     path : str or Path
-        Where to.
+        File to write.
     propeller : Propeller
-        The described blade.
+        The propeller.
     r_over_R : float
-        Where the section is.
+        Radius of the section over the tip radius.
 
     Returns
     -------

@@ -1,4 +1,4 @@
-"""A propeller whose sections a design study has made: NACA 4-digit ones, as files."""
+"""Propellers with NACA 4-digit sections that a design study has chosen, written as files."""
 
 from __future__ import annotations
 
@@ -32,25 +32,25 @@ def with_naca_sections(
     Parameters
     ----------
     propeller : Propeller
-        What is kept.
+        Propeller whose other attributes are kept.
     name : str
-        Of the new propeller and its files, ``name.toml`` and a ``.dat`` for each section.
+        Name of the new propeller and of its files, ``name.toml`` and a ``.dat`` for each section.
     r_over_R : (n_sections,) sequence
-        Where the sections are; linear in between.
+        Radii of the sections; the blade is linear in between.
     max_camber, thickness_over_chord : (n_sections,) arrays
-        Of the sections, maximum camber at 0.4 of the chord.
+        Maximum camber, at 0.4 of the chord, and thickness of the sections over their chord.
     folder : path
-        Where the files go.
+        Folder for the files.
     **changes
         Further attributes of the new propeller.
 
     Returns
     -------
     Propeller
-        As `propmdao analyze` reads it from its file.
+        The new propeller, as `propmdao analyze` reads it from its file.
     """
     folder = Path(folder)
-    cambers, thicknesses = (np.asarray(of, float) for of in (max_camber, thickness_over_chord))
+    cambers, thicknesses = np.asarray(max_camber, float), np.asarray(thickness_over_chord, float)
     airfoils = []
     for r, camber, thickness in zip(r_over_R, cambers, thicknesses, strict=True):
         section = naca4(camber, CAMBER_POSITION, thickness)

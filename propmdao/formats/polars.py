@@ -11,11 +11,41 @@ import numpy as np
 from propmdao.aerodynamics.sections.polars.high_angle import FloatArray
 from propmdao.aerodynamics.sections.polars.table import PolarError, PolarTable
 from propmdao.aerodynamics.sections.polars.user_table import Polar, table_from_polars
+from propmdao.formats.endings import POLAR_READERS
+from propmdao.runtime.input_files import read_text
 
 _COLUMNS = ("alpha", "cl", "cd", "cm")
 _NUMBER = r"([-+]?[\d.]+(?:[eE][-+]?\d+)?)"
 #: Width of a number and numbers per line after the first field of a C81 file.
 _WIDTH, _PER_LINE = 7, 9
+
+
+def load_polars(*paths: str | os.PathLike[str]) -> PolarTable:
+    """Read the polars of one section from files of any format that is read.
+
+    Parameters
+    ----------
+    *paths : path
+        Files, whose endings choose among `propmdao.formats.endings.POLAR_READERS`.
+
+    Returns
+    -------
+    PolarTable
+        The table of one section.
+
+    Raises
+    ------
+    PolarError
+        If a file cannot be read or is wrong, a Reynolds number comes twice, or one of several files
+        is of a format that holds all of a section.
+    """
+    readers = [POLAR_READERS.get(Path(path).suffix.lower(), POLAR_READERS[""]) for path in paths]
+    for path, reader in zip(paths, readers, strict=True):
+        if len(paths) > 1 and not reader.several:
+            others = ", ".join(str(other) for other in paths if other is not path)
+            raise PolarError(f"{path}: a {reader.contents} stands alone; there is also {others}")
+    table: PolarTable = readers[0](*paths) if paths else table_from_polars([])
+    return table
 
 
 def read_polar(path: str | os.PathLike[str]) -> Polar:
@@ -39,8 +69,8 @@ def read_polar(path: str | os.PathLike[str]) -> Polar:
         its values cannot be right; the message begins with the file and names line and column.
     """
     lines = _lines(path)
-    found = (k for k, line in enumerate(lines) if "alpha" in line.lower().split())
-    start = next(found, None)
+    starts = (k for k, line in enumerate(lines) if "alpha" in line.lower().split())
+    start = next(starts, None)
     if start is None:
         raise PolarError(f"{path}: no line names the columns alpha, CL, CD, CM")
     header = "\n".join(lines[:start])
@@ -92,17 +122,17 @@ def read_polars(*paths: str | os.PathLike[str]) -> PolarTable:
     Parameters
     ----------
     *paths : path
-        Files as `read_polar` takes them.
+        Files that `read_polar` can read.
 
     Returns
     -------
     PolarTable
-        One section.
+        The table of one section.
 
     Raises
     ------
     PolarError
-        As `read_polar`, or if a Reynolds number comes twice.
+        If a file is wrong, as `read_polar` finds, or if a Reynolds number comes twice.
     """
     return table_from_polars([read_polar(path) for path in paths])
 
@@ -120,8 +150,8 @@ def read_c81(path: str | os.PathLike[str]) -> PolarTable:
     Returns
     -------
     PolarTable
-        One section at the file's lowest Mach number, which `section_coefficients` corrects; the
-        same at all Reynolds numbers, which the format does not hold.
+        The table of one section at the file's lowest Mach number, which `section_coefficients`
+        corrects, and the same at all Reynolds numbers, which the format does not hold.
 
     Raises
     ------
@@ -184,11 +214,8 @@ def _fields(
 
 
 def _lines(path: str | os.PathLike[str]) -> list[str]:
-    """Lines of a text file."""
-    try:
-        return Path(path).read_text(encoding="utf-8", errors="replace").splitlines()
-    except OSError as error:
-        raise PolarError(f"{path}: cannot be read: {error.strerror}") from error
+    """Lines of a text file, whose names of sections may be in any encoding."""
+    return read_text(path, PolarError, undecodable="replace").splitlines()
 
 
 def _number(text: str, where: str) -> float:

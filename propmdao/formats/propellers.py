@@ -1,4 +1,4 @@
-"""Propellers by name or from files: the formats that `load_propeller` reads."""
+"""Propellers by name or from files of any format that is read."""
 
 from __future__ import annotations
 
@@ -6,7 +6,8 @@ import difflib
 import os
 from pathlib import Path
 
-from propmdao.formats.toml_files import propeller_from_text, read_toml
+from propmdao.formats.endings import PROPELLER_READERS, described
+from propmdao.formats.toml_files import propeller_from_text
 from propmdao.propeller.catalog import catalog_names, propeller_file
 from propmdao.propeller.checks import PropellerError
 from propmdao.propeller.description import Propeller
@@ -18,7 +19,8 @@ def load_propeller(name_or_path: str | os.PathLike[str]) -> Propeller:
     Parameters
     ----------
     name_or_path : str or path
-        A name of `propmdao.propeller.catalog.catalog_names`, or the path of a TOML file.
+        A name of `propmdao.propeller.catalog.catalog_names`, which goes before a file of that name,
+        or the path of a file with an ending of `propmdao.formats.endings.PROPELLER_READERS`.
 
     Returns
     -------
@@ -28,17 +30,27 @@ def load_propeller(name_or_path: str | os.PathLike[str]) -> Propeller:
     Raises
     ------
     PropellerError
-        If there is none of that name (the message lists near ones) or its file is wrong.
+        If there is none of that name (the message lists near ones), or its file is wrong or has an
+        ending that is not read.
     """
     known = catalog_names()
     name = os.fspath(name_or_path)
     if name in known:
         file = propeller_file(name)
         return propeller_from_text(file.read_text(encoding="utf-8"), file.name, None)
-    if name.endswith(".toml") or Path(name).is_file():
-        return read_toml(name)
+    path = Path(name)
+    read = PROPELLER_READERS.get(path.suffix.lower())
+    if read is not None:
+        propeller: Propeller = read(path)
+        return propeller
+    readable = described(PROPELLER_READERS)
+    if path.is_file():
+        raise PropellerError(
+            f"{path}: no propeller is read from a file with the ending '{path.suffix}'; there are "
+            f"{readable}"
+        )
     near = difflib.get_close_matches(name.lower(), known, cutoff=0.4) or known
     raise PropellerError(
         f"unknown propeller '{name}'; near: {', '.join(near)}; `propmdao list` shows the "
-        "catalogue, or give the path of a .toml file"
+        f"catalogue, or give the path of a file: {readable}"
     )

@@ -21,9 +21,9 @@ def rotor_triangles(nodes: npt.ArrayLike, n_blades: int) -> Triangles:
     Parameters
     ----------
     nodes : (n_contour, n_span, 3) array_like
-        Points of `surface_nodes`, of blade 1 [m].
+        Points of the surface of blade 1, as `surface_nodes` makes them [m].
     n_blades : int
-        Equally spaced about the axis, z.
+        Number of blades, equally spaced about the axis, z.
 
     Returns
     -------
@@ -50,11 +50,11 @@ def write_stl(path: str | Path, triangles: Triangles, title: str) -> None:
     Parameters
     ----------
     path : str or Path
-        Where to.
+        File to write.
     triangles : (n, 3, 3) array
         Corners, counter-clockwise seen from outside.
     title : str
-        Of the file; its first 80 bytes.
+        Title of the file, of which 80 bytes are kept.
     """
     first, second, third = np.moveaxis(np.asarray(triangles, float), 1, 0)
     normal = np.cross(second - first, third - first)

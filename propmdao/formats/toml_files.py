@@ -11,9 +11,9 @@ from typing import Any
 
 import tomli_w
 
-from propmdao.formats.text import read_text
 from propmdao.propeller.checks import PropellerError
 from propmdao.propeller.description import DISTRIBUTIONS, Propeller
+from propmdao.runtime.input_files import read_text
 
 
 def read_toml(path: str | os.PathLike[str]) -> Propeller:
@@ -40,15 +40,20 @@ def read_toml(path: str | os.PathLike[str]) -> Propeller:
     return propeller_from_text(text, str(path), path.parent)
 
 
-def write_toml(path: str | os.PathLike[str], propeller: Propeller) -> None:
+def write_toml(path: str | os.PathLike[str], propeller: Propeller) -> int:
     """Write a propeller file that `read_toml` reads back to the same propeller.
 
     Parameters
     ----------
     path : path
-        Where to write; .dat files in its folder or below are named relative to it.
+        File to write; .dat files in its folder or below are named relative to it.
     propeller : Propeller
-        What is written.
+        Propeller to write.
+
+    Returns
+    -------
+    int
+        Number of stations.
     """
     folder = Path(path).absolute().parent
     lines = [tomli_w.dumps({"name": propeller.name, "diameter": propeller.diameter}).rstrip()]
@@ -69,6 +74,7 @@ def write_toml(path: str | os.PathLike[str], propeller: Propeller) -> None:
     lines.append(f"airfoils = [ {', '.join(tables)} ]")
     lines.append(tomli_w.dumps({"source": propeller.source}))
     Path(path).write_text("\n".join(lines), encoding="utf-8")
+    return propeller.r_over_R.size
 
 
 def propeller_from_text(text: str, label: str, folder: Path | None) -> Propeller:
@@ -79,9 +85,9 @@ def propeller_from_text(text: str, label: str, folder: Path | None) -> Propeller
     text : str
         TOML.
     label : str
-        What messages about it begin with.
+        Name of the file, with which messages begin.
     folder : Path or None
-        That .dat paths are relative to.
+        Folder that .dat paths are relative to; None leaves them as they are.
 
     Returns
     -------
@@ -91,7 +97,7 @@ def propeller_from_text(text: str, label: str, folder: Path | None) -> Propeller
     Raises
     ------
     PropellerError
-        As in `read_toml`.
+        If the text is wrong in any of the ways that `read_toml` lists.
     """
     try:
         data = tomllib.loads(text)

@@ -3,13 +3,76 @@
 from __future__ import annotations
 
 import os
+import re
+import warnings
 from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
+import numpy.typing as npt
 
 from propmdao.propeller.checks import PropellerError
 from propmdao.propeller.description import Propeller
+from propmdao.runtime.input_files import read_text, table_rows
+
+_INCH = 0.0254  # m
+# Diameter and pitch, then the number of blades where it is not two: apcsf_9x4.7_geom,
+# da4022_9x6.75_3b.
+_NAME = re.compile(r"_(\d+(?:\.\d+)?)x\d+(?:\.\d+)?(?=_|$)(?:.*_(\d)b(?=_|$))?")
+# Propellers of the data set have 2.2 to 19 inches. A larger number is no inches: five of its names
+# are in millimetres (pl_57x20), some have lost a decimal point (ancf_125x75).
+_LARGEST = 30.0  # inches
+_N_BLADES = 2
+_AIRFOIL = "naca4412"
+
+
+class AssumedBladeWarning(UserWarning):
+    """A file leaves out a part of the blade, for which something has been assumed."""
+
+
+def read_named_uiuc_geometry(path: str | os.PathLike[str]) -> Propeller:
+    """Read chord and blade angle from a file whose name holds the diameter.
+
+    Parameters
+    ----------
+    path : path
+        File as `read_uiuc_geometry` takes it, named like the files of the data set:
+        ``apcsf_9x4.7_geom.txt`` is 9 inches in diameter, ``da4022_9x6.75_3b.txt`` has 3 blades.
+
+    Returns
+    -------
+    Propeller
+        The propeller, named after the file, with two blades where its name has no other number,
+        and with NACA 4412 sections. An `AssumedBladeWarning` says what was assumed.
+
+    Raises
+    ------
+    PropellerError
+        If the name does not hold the diameter, the file cannot be read or a value is out of range;
+        the message begins with the file.
+    """
+    path = Path(path)
+    name = _NAME.search(path.stem)
+    inches = float(name[1]) if name else 0.0
+    if name is None or not 0.0 < inches <= _LARGEST:
+        _columns(path)  # a file that is no geometry at all is refused as that
+        raise PropellerError(
+            f"{path}: the diameter is missing: a UIUC geometry file does not hold it, and the name "
+            f"does not say it, as apcsf_9x4.7_geom.txt does in inches, up to {_LARGEST:g}; rename "
+            "the file, or write a propeller file (TOML), which holds diameter, blades and airfoils"
+        )
+    n_blades = int(name[2] or _N_BLADES)
+    propeller = read_uiuc_geometry(
+        path, diameter=inches * _INCH, n_blades=n_blades, airfoils=[(1.0, _AIRFOIL)]
+    )
+    blades = "" if name[2] else f" and {_N_BLADES} blades"
+    warnings.warn(
+        f"{path}: assumed, for the file does not say: NACA 4412 sections from root to tip{blades}; "
+        "a propeller file (TOML), which `propmdao export` writes, can hold others",
+        AssumedBladeWarning,
+        stacklevel=4,  # past the table of readers and `load_propeller`
+    )
+    return propeller
 
 
 def read_uiuc_geometry(
@@ -27,11 +90,11 @@ def read_uiuc_geometry(
         Text file: a header line, which may be missing, then r/R, c/R and beta [deg], separated by
         blanks or commas.
     diameter : float
-        Tip to tip [m].
+        Diameter, tip to tip [m].
     n_blades : int
         Number of blades.
     airfoils : sequence of (float, str)
-        r/R and airfoil, as in `propmdao.propeller.description.Propeller`.
+        Pairs of r/R and airfoil, as in `propmdao.propeller.description.Propeller`.
 
     Returns
     -------
@@ -44,26 +107,7 @@ def read_uiuc_geometry(
         If the file cannot be read or a value is out of range; the message begins with the file.
     """
     path = Path(path)
-    try:
-        lines = path.read_text(encoding="utf-8").splitlines()
-    except OSError as error:
-        raise PropellerError(f"{path}: cannot be read: {error.strerror}") from error
-    except UnicodeDecodeError as error:
-        raise PropellerError(f"{path}: is not text in UTF-8") from error
-    rows = []
-    for number, line in enumerate(lines, start=1):
-        if not line.strip():
-            continue
-        try:
-            r, chord, beta = (float(field) for field in line.replace(",", " ").split())
-        except ValueError:
-            if number == 1:
-                continue
-            raise PropellerError(
-                f"{path}, line {number}: three numbers r/R c/R beta expected, not '{line.strip()}'"
-            ) from None
-        rows.append((r, chord, beta))
-    r_over_R, c_over_R, beta_deg = np.array(rows).reshape(-1, 3).T
+    r_over_R, c_over_R, beta_deg = _columns(path)
     try:
         return Propeller(
             name=path.stem,
@@ -77,3 +121,10 @@ def read_uiuc_geometry(
         )
     except PropellerError as error:
         raise PropellerError(f"{path}: {error}") from error
+
+
+def _columns(path: Path) -> npt.NDArray[np.float64]:
+    """Return r/R, c/R and beta, a row each."""
+    text = read_text(path, PropellerError)
+    rows = table_rows(text, 3, "three numbers r/R c/R beta", PropellerError, str(path))
+    return np.array(rows).reshape(-1, 3).T

@@ -13,7 +13,7 @@ from propmdao.acoustics.sounds.recordings import SAMPLE_RATE
 
 
 class Recording(NamedTuple):
-    """What has been written to a sound file.
+    """A sound file that has been written.
 
     Attributes
     ----------
@@ -24,7 +24,7 @@ class Recording(NamedTuple):
     peak : float
         Largest pressure in it [Pa].
     duration : float
-        [s].
+        Length of the record [s].
     """
 
     path: Path
@@ -52,9 +52,9 @@ def write_wav(
         Pressure of the largest number in the file [Pa]. Two blades written with the same one are
         as loud beside each other as they are; see `common_full_scale`.
     sample_rate : int
-        [Hz].
+        Samples per second [Hz].
     bits : {24, 32}
-        Of each sample.
+        Number of bits of each sample.
 
     Returns
     -------

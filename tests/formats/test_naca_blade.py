@@ -1,4 +1,4 @@
-"""A propeller with sections that a study has made: what was asked for, and readable again."""
+"""A propeller with sections that a study has chosen has them, and can be read again."""
 
 import numpy as np
 import pytest
@@ -21,14 +21,16 @@ def blade(tmp_path):
 
 
 def test_camber_and_thickness_are_linear_between_the_sections(blade):
-    found = Blade.from_propeller(blade)
-    assert_allclose(found.thickness_over_chord, np.interp(blade.r_over_R, R, THICKNESS), rtol=1e-12)
+    geometry = Blade.from_propeller(blade)
     assert_allclose(
-        found.camber_over_chord, np.interp(blade.r_over_R, R, CAMBER), rtol=1e-3, atol=1e-12
+        geometry.thickness_over_chord, np.interp(blade.r_over_R, R, THICKNESS), rtol=1e-12
+    )
+    assert_allclose(
+        geometry.camber_over_chord, np.interp(blade.r_over_R, R, CAMBER), rtol=1e-3, atol=1e-12
     )
 
 
-def test_the_rest_is_kept_or_changed_as_told(blade):
+def test_other_attributes_are_kept_or_changed_as_asked(blade):
     base = load_propeller("apcsf_11x4.7")
     assert_allclose(blade.beta_deg, base.beta_deg + 1.0)
     assert_allclose(blade.c_over_R, base.c_over_R)
@@ -38,8 +40,8 @@ def test_the_rest_is_kept_or_changed_as_told(blade):
 def test_its_file_says_the_same(blade, tmp_path):
     again = load_propeller(tmp_path / "new.toml")
     assert again.name == "new"
-    for one, other in zip(blade.sections(), again.sections(), strict=True):
-        assert_allclose(one, other, atol=1e-12)
+    for written, read in zip(blade.sections(), again.sections(), strict=True):
+        assert_allclose(read, written, atol=1e-12)
 
 
 def test_its_polars_are_those_of_the_catalogue(blade):

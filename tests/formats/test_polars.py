@@ -10,7 +10,7 @@ import pytest
 
 from propmdao.aerodynamics.sections.polars.table import PolarError, PolarTable, section_coefficients
 from propmdao.aerodynamics.sections.polars.user_table import Polar, table_from_polars
-from propmdao.formats.polars import read_c81, read_polar, read_polars
+from propmdao.formats.polars import load_polars, read_c81, read_polar, read_polars
 
 XFLR5 = """xflr5 v6.61
 
@@ -48,10 +48,10 @@ def written(folder: Path, text: str, name: str = "flat.txt") -> Path:
     return path
 
 
-def at(table: PolarTable, degrees: np.ndarray, re: float = 6e4) -> np.ndarray:
-    one = PolarTable(table.alpha, table.log_re, jnp.repeat(table.values, degrees.size, axis=0))
-    found = section_coefficients(one, jnp.radians(degrees), jnp.full(degrees.size, re))
-    return np.stack([np.asarray(values) for values in found])
+def coefficients_at(table: PolarTable, degrees: np.ndarray, re: float = 6e4) -> np.ndarray:
+    strips = PolarTable(table.alpha, table.log_re, jnp.repeat(table.values, degrees.size, axis=0))
+    coefficients = section_coefficients(strips, jnp.radians(degrees), jnp.full(degrees.size, re))
+    return np.stack([np.asarray(values) for values in coefficients])
 
 
 def test_xflr5_polar(tmp_path: Path) -> None:
@@ -71,30 +71,34 @@ def test_xfoil_polar(tmp_path: Path) -> None:
     assert read_polar(written(tmp_path, header + "".join(rows()))).cm[0] == -0.05
 
 
-def test_a_polar_is_met_where_it_holds_and_continued_outside(tmp_path: Path) -> None:
+def test_a_polar_is_kept_where_it_has_values_and_continued_outside(tmp_path: Path) -> None:
     table = read_polars(written(tmp_path, XFLR5 + "".join(rows())))
-    cl, cd, cm = at(table, ANGLES)
+    cl, cd, cm = coefficients_at(table, ANGLES)
     np.testing.assert_allclose(cl, lift(ANGLES), atol=1e-9)
     np.testing.assert_allclose(cd, drag(ANGLES), rtol=1e-9)
     np.testing.assert_allclose(cm, -0.05, atol=1e-9)
-    around = at(table, np.linspace(-180.0, 180.0, 721))
+    around = coefficients_at(table, np.linspace(-180.0, 180.0, 721))
     assert np.isfinite(around).all()
     assert around[1].max() == pytest.approx(2.01, abs=1e-3)
 
 
 def test_one_reynolds_number_holds_for_all(tmp_path: Path) -> None:
     table = read_polars(written(tmp_path, XFLR5 + "".join(rows())))
-    np.testing.assert_allclose(at(table, ANGLES, 1e3), at(table, ANGLES, 1e7), rtol=1e-12)
+    np.testing.assert_allclose(
+        coefficients_at(table, ANGLES, 1e3), coefficients_at(table, ANGLES, 1e7), rtol=1e-12
+    )
 
 
-def test_reynolds_numbers_are_sorted_and_met(tmp_path: Path) -> None:
+def test_polars_are_sorted_by_reynolds_number_and_kept_there(tmp_path: Path) -> None:
     text = XFLR5 + "".join(rows())
     high = text.replace("0.060 e 6", "0.240 e 6").replace(" 0.02", " 0.01")
     table = read_polars(written(tmp_path, high, "a.txt"), written(tmp_path, text, "b.txt"))
     np.testing.assert_allclose(np.exp(table.log_re), [6e4, 2.4e5])
-    assert at(table, np.zeros(1), 6e4)[1, 0] == pytest.approx(0.02)
-    assert at(table, np.zeros(1), 2.4e5)[1, 0] == pytest.approx(0.01)
-    assert at(table, np.zeros(1), 1.2e5)[1, 0] == pytest.approx(0.01 * 2**0.5)  # logarithmic
+    assert coefficients_at(table, np.zeros(1), 6e4)[1, 0] == pytest.approx(0.02)
+    assert coefficients_at(table, np.zeros(1), 2.4e5)[1, 0] == pytest.approx(0.01)
+    assert coefficients_at(table, np.zeros(1), 1.2e5)[1, 0] == pytest.approx(
+        0.01 * 2**0.5
+    )  # logarithmic
     with pytest.raises(PolarError, match="'FLAT 6' and 'FLAT 6' are equal: 60000"):
         read_polars(tmp_path / "b.txt", tmp_path / "b.txt")
 
@@ -133,7 +137,7 @@ WRONG = {
 
 
 @pytest.mark.parametrize("case", WRONG)
-def test_a_wrong_file_is_told_in_one_line(tmp_path: Path, case: str) -> None:
+def test_a_wrong_file_is_described_in_one_line(tmp_path: Path, case: str) -> None:
     text, message = WRONG[case]
     with pytest.raises(PolarError, match=message) as caught:
         read_polar(written(tmp_path, text))
@@ -141,7 +145,7 @@ def test_a_wrong_file_is_told_in_one_line(tmp_path: Path, case: str) -> None:
     assert "\n" not in str(caught.value)
 
 
-def test_a_missing_file_is_told(tmp_path: Path) -> None:
+def test_a_missing_file_is_named(tmp_path: Path) -> None:
     with pytest.raises(PolarError, match="none.txt: cannot be read: No such file"):
         read_polar(tmp_path / "none.txt")
     with pytest.raises(PolarError, match="at least one polar"):
@@ -177,14 +181,14 @@ def c81(n_mach: int = 2, angles: np.ndarray = CIRCLE) -> str:
 @pytest.mark.parametrize("n_mach", [1, 2, 9, 11])
 def test_c81_is_read_at_its_lowest_mach_number(tmp_path: Path, n_mach: int) -> None:
     table = read_c81(written(tmp_path, c81(n_mach), "flat.c81"))
-    cl, cd, cm = at(table, CIRCLE)
+    cl, cd, cm = coefficients_at(table, CIRCLE)
     radians = np.radians(CIRCLE)
     np.testing.assert_allclose(cl, np.sin(2 * radians), atol=6e-4)  # three decimals
     np.testing.assert_allclose(cd, 0.01 + 2 * np.sin(radians) ** 2, atol=6e-4)
     np.testing.assert_allclose(cm, 0.0, atol=1e-12)
 
 
-def test_a_wrong_c81_file_is_told_in_one_line(tmp_path: Path) -> None:
+def test_a_wrong_c81_file_is_described_in_one_line(tmp_path: Path) -> None:
     text = c81()
     for wrong, message in (
         ("", "line 1: columns 31-42 must hold six counts"),
@@ -197,3 +201,15 @@ def test_a_wrong_c81_file_is_told_in_one_line(tmp_path: Path) -> None:
             read_c81(written(tmp_path, wrong, "flat.c81"))
         assert str(caught.value).startswith(f"{tmp_path / 'flat.c81'}: ")
         assert "\n" not in str(caught.value)
+
+
+def test_the_ending_says_which_format_a_polar_has(tmp_path: Path) -> None:
+    table = written(tmp_path, c81(), "flat.C81")
+    np.testing.assert_array_equal(load_polars(table).values, read_c81(table).values)
+    polar = written(tmp_path, XFLR5 + "".join(rows()), "flat.pol")
+    np.testing.assert_array_equal(load_polars(polar).values, read_polars(polar).values)
+    with pytest.raises(PolarError) as caught:
+        load_polars(polar, table)
+    assert str(caught.value) == f"{table}: a C81 file stands alone; there is also {polar}"
+    with pytest.raises(PolarError, match="at least one polar"):
+        load_polars()

@@ -23,7 +23,7 @@ def skin(name: str, n_contour: int = 21, n_span: int = 12) -> np.ndarray:
 
 @pytest.fixture(params=["apcsf_11x4.7", "sharp"])
 def nodes(request: pytest.FixtureRequest) -> np.ndarray:
-    """Of a blade as it is, and with both sides joined at a sharp trailing edge."""
+    """Nodes of a blade as it is, and with both sides joined at a sharp trailing edge."""
     if request.param != "sharp":
         return skin(request.param)
     nodes = skin("apcsf_11x4.7")
@@ -37,7 +37,7 @@ def directed_edges(triangles: np.ndarray) -> Counter[tuple[bytes, bytes]]:
 
 
 @pytest.mark.parametrize("n_blades", [1, 3])
-def test_every_edge_is_run_once_in_either_direction(nodes: np.ndarray, n_blades: int) -> None:
+def test_every_edge_occurs_once_in_either_direction(nodes: np.ndarray, n_blades: int) -> None:
     edges = directed_edges(rotor_triangles(nodes, n_blades))
     assert set(edges.values()) == {1}
     assert all((end, start) in edges for start, end in edges)

@@ -12,7 +12,6 @@ import pytest
 
 from propmdao.formats.propellers import load_propeller
 from propmdao.formats.toml_files import read_toml, write_toml
-from propmdao.formats.uiuc import read_uiuc_geometry
 from propmdao.propeller.airfoils.airfoil import CHORD_FRACTION
 from propmdao.propeller.checks import PropellerError
 from propmdao.propeller.description import Propeller
@@ -257,42 +256,3 @@ def test_an_unknown_propeller_lists_what_comes_near(name: str, parts: list[str])
     for part in parts:
         assert part in str(caught.value)
     assert "\n" not in str(caught.value)
-
-
-@pytest.mark.parametrize(
-    "text",
-    [
-        "  r/R     c/R    beta\n 0.15   0.109   21.11\n 0.5  0.223 17.06\n 1.00 0.042  5.04\n\n",
-        "r_over_R,c_over_R,beta_deg\n0.15,0.109,21.11\n0.5,0.223,17.06\n1,0.042,5.04\n",
-        "0.15 0.109 21.11\n0.5 0.223 17.06\n1 0.042 5.04\n",
-    ],
-)
-def test_uiuc_geometry_is_read_in_either_form(text: str, tmp_path: Path) -> None:
-    read = read_uiuc_geometry(
-        write(tmp_path / "apcsf_10x4.7_geom.txt", text),
-        diameter=0.254,
-        n_blades=2,
-        airfoils=AIRFOILS,
-    )
-    np.testing.assert_array_equal(read.r_over_R, [0.15, 0.5, 1.0])
-    np.testing.assert_array_equal(read.c_over_R, [0.109, 0.223, 0.042])
-    np.testing.assert_array_equal(read.beta_deg, [21.11, 17.06, 5.04])
-    assert read.name == "apcsf_10x4.7_geom"
-    assert "apcsf_10x4.7_geom.txt" in read.source
-
-
-@pytest.mark.parametrize(
-    ("text", "message"),
-    [
-        ("h\n0.15 0.1 20\n0.5 0.2\n", ", line 3: three numbers r/R c/R beta expected, not '0.5"),
-        ("h\n0.15 0.1 20\n1 -0.2 5\n", ": c_over_R must be positive; station 2 (r/R 1) has -0.2"),
-        ("h\n", ": r_over_R must hold at least 2 stations; it holds 0"),
-    ],
-)
-def test_a_wrong_geometry_file_names_the_line_or_the_station(
-    text: str, message: str, tmp_path: Path
-) -> None:
-    path = write(tmp_path / "geom.txt", text)
-    with pytest.raises(PropellerError) as caught:
-        read_uiuc_geometry(path, diameter=0.254, n_blades=2, airfoils=AIRFOILS)
-    assert str(caught.value).startswith(f"{path}{message}")

@@ -10,7 +10,7 @@ from propmdao.formats.wopwop.namelists import HARMONICS, Group
 
 
 def change_of_base(group: Group) -> Motion:
-    """Frames of a ``&CB`` group: its translation, then its rotation.
+    """Frames of a ``&CB`` group, a change of base: its translation, then its rotation.
 
     Parameters
     ----------
@@ -20,7 +20,7 @@ def change_of_base(group: Group) -> Motion:
     Returns
     -------
     Motion
-        None, one or two frames.
+        No frame, one or two.
 
     Raises
     ------
@@ -72,18 +72,18 @@ def uniform_motion(
     Parameters
     ----------
     group : Group
-        The observers' group, to be named in errors.
+        Group of the observers, which errors name.
     chain : Motion
         Frames that neither turn nor accelerate.
     points : (n, 3) array
-        In the innermost frame [m].
+        Positions in the innermost frame [m].
 
     Returns
     -------
     position : (n, 3) array
-        On the ground at time 0 [m].
+        Positions on the ground at time 0 [m].
     velocity : (3,) array
-        On the ground [m/s].
+        Velocity on the ground [m/s].
 
     Raises
     ------
@@ -108,12 +108,12 @@ def observer_points(group: Group) -> NDArray[np.float64]:
     Returns
     -------
     (n, 3) array
-        The first index (x, or theta of a sphere) fastest [m].
+        Positions, the first index (x, or theta of a sphere) fastest [m].
 
     Raises
     ------
     WopwopFileError
-        If they are given in another way.
+        If the group describes them in another way.
     """
 
     def line(name: str, count: str) -> NDArray[np.float64]:

@@ -1,19 +1,72 @@
-"""Binary streams of PSU-WOPWOP: 32-bit words without record markers, either byte order."""
+"""Binary files of PSU-WOPWOP: 32-bit words without record markers, in either byte order.
+
+Geometry and loading files begin alike, which is here too.
+"""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from propmdao.runtime.input_files import read_bytes
+
 MAGIC = 42
+TIMES = {1: "constant", 2: "periodic", 3: "aperiodic"}
+GRIDS = {1: "structured", 2: "unstructured"}
+CENTRED = {1: "at nodes", 2: "at faces"}
+CONSTANT, PERIODIC, APERIODIC = TIMES
+STRUCTURED, UNSTRUCTURED = GRIDS
+_AT_NODES, _AT_FACES = CENTRED
 
 Floats = NDArray[np.float32]
 
 
 class WopwopFileError(ValueError):
     """A PSU-WOPWOP file that cannot be read, in one line that names the file and why."""
+
+
+class FileKind(NamedTuple):
+    """A kind of file.
+
+    Attributes
+    ----------
+    name : str
+        Name of the kind, for messages.
+    number : int
+        Number of the kind in the file.
+    text_sizes : tuple of int
+        Lengths of the texts at the beginning.
+    """
+
+    name: str
+    number: int
+    text_sizes: tuple[int, ...]
+
+
+GEOMETRY = FileKind("geometry", 1, (32, 1024))
+LOADING = FileKind("loading", 2, (1024,))
+
+
+class Layout(NamedTuple):
+    """Grids and times of all zones of a file, which are alike.
+
+    Attributes
+    ----------
+    grid : int
+        Kind of their grids, a key of `GRIDS`.
+    time : int
+        Kind of their dependence on time, a key of `TIMES`.
+    at_faces : bool
+        True if normals or loads belong to faces, False if to nodes.
+    """
+
+    grid: int
+    time: int
+    at_faces: bool
 
 
 class Reader:
@@ -32,11 +85,7 @@ class Reader:
 
     def __init__(self, path: Path) -> None:
         self.path = path
-        try:
-            self._data = path.read_bytes()
-        except OSError as error:
-            raise WopwopFileError(f"{path}: {error.strerror or error}") from None
-        self._at = 0
+        self._data = read_bytes(path, WopwopFileError, complaint=str(path))
         orders = [o for o in "<>" if self._data[:4] == np.array(MAGIC, f"{o}i4").tobytes()]
         if not orders:
             raise WopwopFileError(
@@ -44,9 +93,9 @@ class Reader:
                 f"{self._data[:4].hex(' ') or 'nothing'}, not with {MAGIC} as a 32-bit integer"
             )
         self.byte_order = orders[0]
-        #: What fills up texts: blanks or zero bytes.
+        #: Byte that fills up texts, a blank or zero.
         self.padding = b" "
-        self._at = 4
+        self._position = 4
 
     def ints(self, n: int) -> list[int]:
         """Return the next n integers."""
@@ -58,7 +107,7 @@ class Reader:
         return np.frombuffer(raw, f"{self.byte_order}f4").reshape(shape).astype(np.float32)
 
     def text(self, n: int) -> str:
-        """Return a text of n bytes without what fills it up."""
+        """Return a text of n bytes without the bytes that fill it up."""
         raw = self._take(n)
         if raw.endswith(b"\0"):
             self.padding = b"\0"
@@ -66,33 +115,28 @@ class Reader:
 
     def expect(self, wanted: int, what: str) -> None:
         """Refuse the file if the next integer is not the one wanted."""
-        (found,) = self.ints(1)
-        if found != wanted:
-            raise self.error(f"{what} must be {wanted}; it is {found}")
-
-    def version(self) -> None:
-        """Refuse files of another version than 1.0."""
-        self.expect(1, "version")
-        self.expect(0, "second number of the version")
+        (value,) = self.ints(1)
+        if value != wanted:
+            raise self.error(f"{what} must be {wanted}; it is {value}")
 
     def choose(self, options: dict[int, str], what: str) -> int:
         """Return the next integer if it is one of the options, refuse the file otherwise."""
-        (found,) = self.ints(1)
-        if found not in options:
+        (value,) = self.ints(1)
+        if value not in options:
             known = ", ".join(f"{number} ({meaning})" for number, meaning in options.items())
-            raise self.error(f"{what} must be one of {known}; it is {found}")
-        return found
+            raise self.error(f"{what} must be one of {known}; it is {value}")
+        return value
 
     def count(self, what: str) -> int:
         """Return the next integer, a count of at least 1."""
-        (found,) = self.ints(1)
-        if found < 1:
-            raise self.error(f"{what} must be at least 1; it is {found}")
-        return found
+        (value,) = self.ints(1)
+        if value < 1:
+            raise self.error(f"{what} must be at least 1; it is {value}")
+        return value
 
     def end(self) -> None:
         """Refuse a file that goes on after all that its header promised."""
-        if left := len(self._data) - self._at:
+        if left := len(self._data) - self._position:
             raise self.error(f"{left} bytes more than its header says")
 
     def error(self, message: str) -> WopwopFileError:
@@ -100,12 +144,13 @@ class Reader:
         return WopwopFileError(f"{self.path}: {message}")
 
     def _take(self, n: int) -> bytes:
-        if self._at + n > len(self._data):
+        start, stop = self._position, self._position + n
+        if stop > len(self._data):
             raise self.error(
-                f"truncated: {self._at + n} bytes or more expected, the file has {len(self._data)}"
+                f"truncated: {stop} bytes or more expected, the file has {len(self._data)}"
             )
-        self._at += n
-        return self._data[self._at - n : self._at]
+        self._position = stop
+        return self._data[start:stop]
 
 
 class Writer:
@@ -142,3 +187,68 @@ class Writer:
     def save(self, path: Path) -> None:
         """Write the file."""
         path.write_bytes(b"".join(self._parts))
+
+
+def read_opening(file: Reader, kind: FileKind) -> tuple[list[str], int, Layout]:
+    """Read the beginning of a file, which both kinds have alike.
+
+    Parameters
+    ----------
+    file : Reader
+        Reader at the version.
+    kind : FileKind
+        Kind of file that is expected, `GEOMETRY` or `LOADING`.
+
+    Returns
+    -------
+    texts : list of str
+        Texts of the kind.
+    n_zones : int
+        Number of zones of the geometry.
+    layout : Layout
+        Layout of the zones.
+
+    Raises
+    ------
+    WopwopFileError
+        If the file is of another version or kind, or has a layout that is not known.
+    """
+    file.expect(1, "version")
+    file.expect(0, "second number of the version")
+    texts = [file.text(size) for size in kind.text_sizes]
+    file.expect(kind.number, f"file type ({kind.number} is a {kind.name})")
+    n_zones = file.count("number of zones")
+    grid = file.choose(GRIDS, "grid")
+    time = file.choose(TIMES, f"time dependence of the {kind.name}")
+    at_faces = file.choose(CENTRED, f"place of the {kind.name}'s values") == _AT_FACES
+    return texts, n_zones, Layout(grid, time, at_faces)
+
+
+def write_opening(
+    out: Writer, kind: FileKind, texts: Sequence[str], n_zones: int, layout: Layout
+) -> None:
+    """Write the beginning of a file; the counterpart of `read_opening`.
+
+    Parameters
+    ----------
+    out : Writer
+        Writer of a new file.
+    kind : FileKind
+        Kind of the file, `GEOMETRY` or `LOADING`.
+    texts : sequence of str
+        Texts of the kind.
+    n_zones : int
+        Number of zones of the geometry.
+    layout : Layout
+        Layout of the zones.
+
+    Raises
+    ------
+    ValueError
+        If a text is too long.
+    """
+    out.ints(1, 0)  # version
+    for text, size in zip(texts, kind.text_sizes, strict=True):
+        out.text(text, size)
+    centred = _AT_FACES if layout.at_faces else _AT_NODES
+    out.ints(kind.number, n_zones, layout.grid, layout.time, centred)

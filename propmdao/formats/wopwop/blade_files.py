@@ -1,4 +1,4 @@
-"""A blade of ours in PSU-WOPWOP's files: its skin as grids, its forces as a line."""
+"""A blade in PSU-WOPWOP's files: its skin as grids, its forces as a line."""
 
 from __future__ import annotations
 
@@ -20,19 +20,20 @@ def blade_geometry(nodes: ArrayLike | None, loads: BladeLoads | None) -> Geometr
     Parameters
     ----------
     nodes : (n_contour, n_span, 3) array_like or None
-        Points of `surface_nodes` [m].
+        Points of the surface, as `surface_nodes` makes them [m].
     loads : PointLoads, PeriodicLoads, AperiodicLoads or None
         Forces of the blade.
 
     Returns
     -------
     GeometryFile
-        Zones: skin, trailing edge if that has a thickness, root and tip cap, last the line.
+        File of these zones: skin, trailing edge if that has a thickness, root and tip cap, and
+        last the line.
 
     Raises
     ------
     ValueError
-        If there is neither.
+        If there is neither a surface nor loads.
     """
     zones = [] if nodes is None else _skin(np.asarray(nodes, float))
     if loads is not None:
@@ -54,18 +55,18 @@ def blade_loading(
     loads : PointLoads, PeriodicLoads or AperiodicLoads
         Forces ON THE FLUID.
     n_zones : int
-        Number of zones of the geometry, the line the last.
+        Number of zones of the geometry; the line is the last of them.
     rotation_speed : float
-        Omega [rad/s]: gives the period; keys are the angle turned through.
+        Rotation speed [rad/s], which gives the period; keys are the angle turned through.
     blade : int
-        Which, counted from 0; matters to `AperiodicLoads` alone.
+        Number of the blade, counted from 0; it matters to `AperiodicLoads` alone.
 
     Returns
     -------
     LoadingFile
-        In the frame of the blade.
+        Loads in the frame of the blade.
     """
-    position, order = _line(loads)
+    position, point = _line(loads)
     force = np.asarray(loads.force, float)
     keys = period = None
     if isinstance(loads, PeriodicLoads):
@@ -79,7 +80,7 @@ def blade_loading(
     else:
         force = force[None]
     total = np.zeros((len(position), len(force), 3))
-    np.add.at(total, order, np.swapaxes(force, 0, 1))
+    np.add.at(total, point, np.swapaxes(force, 0, 1))
     # The line is integrated by the trapezoidal rule, so that each node gets back its force.
     between = 0.5 * np.linalg.norm(np.diff(position, axis=0), axis=-1)
     length = np.pad(between, (0, 1)) + np.pad(between, (1, 0))
@@ -90,19 +91,20 @@ def blade_loading(
 
 
 def _line(loads: BladeLoads) -> tuple[Array, NDArray[np.int64]]:
-    """Places of the forces from root to tip, none twice, and which of them each force acts on."""
+    """Points that forces act on from root to tip, each once, and the index of the point of each."""
     # Single precision, as they are written: lengths have to be of what is read.
-    given = np.asarray(loads.position, np.float32).astype(float)
-    points, which = np.unique(given, axis=0, return_inverse=True)
-    along = np.lexsort((points[:, 1], np.linalg.norm(points[:, :2], axis=1)))
-    place = np.empty_like(along)
-    place[along] = np.arange(along.size)
-    if along.size < 2:
+    position = np.asarray(loads.position, np.float32).astype(float)
+    points, indices = np.unique(position, axis=0, return_inverse=True)
+    order = np.lexsort((points[:, 1], np.linalg.norm(points[:, :2], axis=1)))
+    rank = np.empty_like(order)
+    rank[order] = np.arange(order.size)
+    if order.size < 2:
         raise ValueError("loads for PSU-WOPWOP must act at 2 or more points: they are a line there")
-    return points[along], place[which.reshape(-1)]
+    return points[order], rank[indices.reshape(-1)]
 
 
 def _skin(nodes: Array) -> list[Zone]:
+    """Zones of the surface of a blade, closed by its trailing edge and two caps."""
     half = (len(nodes) - 1) // 2
     upper, lower = nodes[: half + 1], nodes[half:][::-1]
     grids = {"skin": nodes}
@@ -111,7 +113,7 @@ def _skin(nodes: Array) -> list[Zone]:
     grids["root"] = np.stack([upper[:, 0], lower[:, 0]])
     grids["tip"] = np.stack([lower[:, -1], upper[:, -1]])
     areas = {name: vector_areas(grid) for name, grid in grids.items()}
-    # All grids turn the same way round; which way is outside the sign of the volume says.
+    # All grids turn the same way round; the sign of the volume says which side is outside.
     volume = sum(
         np.sum(means(grid) * area)
         for grid, area in zip(grids.values(), areas.values(), strict=True)
@@ -126,7 +128,7 @@ def _zone(name: str, grid: Array, normal: Array) -> Zone:
 
 
 def _normals(area: Array) -> Array:
-    """Unit normals at the nodes: of the areas around each."""
+    """Unit normals at the nodes, from the areas of the cells around each."""
     padded = np.pad(area, ((1, 1), (1, 1), (0, 0)))
     around = padded[:-1, :-1] + padded[:-1, 1:] + padded[1:, 1:] + padded[1:, :-1]
     length = np.linalg.norm(around, axis=-1, keepdims=True)

@@ -1,4 +1,4 @@
-"""Cases of PSU-WOPWOP: who is where, how it moves and which files it radiates from."""
+"""Cases of PSU-WOPWOP: observers, sources, how they move and which files the sources have."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from propmdao.acoustics.kinematics.motion import Frame, Motion
 from propmdao.formats.wopwop.bases import change_of_base, observer_points, uniform_motion
 from propmdao.formats.wopwop.namelists import Group, read_namelists
 
-# Groups that may follow a container or observer and are about what is not computed here.
+# Groups that may follow a container or observer, and what they are about, which is not computed.
 _ELSEWHERE = {
     "bpmin": "broadband noise of this container",
     "peggin": "broadband noise of this container",
@@ -30,17 +30,17 @@ class Container:
     Attributes
     ----------
     title : str
-        Its own.
+        Title of the container itself.
     motion : Motion
         Changes of base from the ground to the container.
     geometry : Path
-        File.
+        Geometry file.
     loading : Path or None
-        File; without one it has thickness noise only.
+        Loading file; a container without one has thickness noise only.
     key_offset : float
-        ``periodicKeyOffset``.
+        Offset of its periodic keys, ``periodicKeyOffset``.
     step : float or None
-        Of the source times [s], its own or that of the container around it.
+        Step of the source times [s], its own or that of the container around it.
     """
 
     title: str
@@ -58,11 +58,11 @@ class ObserverGrid:
     Attributes
     ----------
     title : str
-        Theirs.
+        Title of the observers.
     position : (n, 3) array
-        On the ground at time 0, the first index of the grid fastest [m].
+        Positions on the ground at time 0, the first index of the grid fastest [m].
     velocity : (3,) array
-        On the ground [m/s].
+        Velocity on the ground [m/s].
     times : (n_times,) array
         Observer times [s].
     band_hz : tuple of float
@@ -83,15 +83,15 @@ class Case:
     Attributes
     ----------
     name : str
-        Its namelist file.
+        Name of the case's namelist file.
     density, sound_speed : float
-        Of the air [kg/m^3], [m/s].
+        Density [kg/m^3] and speed of sound [m/s] of the air.
     thickness, loading : bool
-        Which of the two are wanted.
+        True for the kinds of noise that are wanted.
     containers : tuple of Container
-        Those with files.
+        Containers that have files.
     observers : tuple of ObserverGrid
-        All.
+        All observers.
     """
 
     name: str
@@ -109,18 +109,18 @@ def read_cases(folder: str | Path) -> list[Case]:
     Parameters
     ----------
     folder : str or Path
-        Where ``cases.nam`` is. A case whose ``globalFolderName`` is not there is looked for beside
-        ``cases.nam``.
+        Folder with ``cases.nam``. A case whose ``globalFolderName`` does not exist is looked for
+        beside ``cases.nam``.
 
     Returns
     -------
     list of Case
-        In order. A `UserWarning` names every key and group without effect.
+        The cases in order. A `UserWarning` names every key and group without effect.
 
     Raises
     ------
     WopwopFileError
-        If a file is missing or says what cannot be.
+        If a file is missing or describes what is impossible.
     """
     folder = Path(folder)
     groups = read_namelists(folder / "cases.nam")
@@ -141,7 +141,7 @@ class _Parser:
     """Takes the groups of a case file one after another: their order says who belongs to whom."""
 
     groups: list[Group]
-    at: int = 0
+    position: int = 0
     containers: list[Container] = field(default_factory=list)
     chains: dict[str, Motion] = field(default_factory=dict)
 
@@ -158,8 +158,8 @@ class _Parser:
             later.append(self.observers())
         for _ in range(environment.count("nbsourcecontainers", 1)):
             self.container((), None)
-        if self.at < len(self.groups):
-            raise self.groups[self.at].error("one group more than the containers ask for")
+        if self.position < len(self.groups):
+            raise self.groups[self.position].error("one group more than the containers ask for")
         return Case(
             name,
             density,
@@ -171,12 +171,12 @@ class _Parser:
         )
 
     def take(self, *names: str) -> Group:
-        if self.at == len(self.groups):
+        if self.position == len(self.groups):
             raise self.groups[-1].error(f"the file ends behind it; &{names[0]} is missing")
-        group = self.groups[self.at]
+        group = self.groups[self.position]
         if group.name not in names:
             raise group.error(f"&{names[0]} expected here")
-        self.at += 1
+        self.position += 1
         return group
 
     def chain(self, owner: Group) -> Motion:
@@ -196,7 +196,7 @@ class _Parser:
         return tuple(motion)
 
     def next_is_elsewhere(self) -> bool:
-        return self.at < len(self.groups) and self.groups[self.at].name in _ELSEWHERE
+        return self.position < len(self.groups) and self.groups[self.position].name in _ELSEWHERE
 
     def container(self, outer: Motion, step: float | None) -> None:
         group = self.take("containerin")

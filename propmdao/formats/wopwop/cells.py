@@ -1,4 +1,4 @@
-"""Cells of grids of nodes."""
+"""Cells between the nodes of a grid: their corners, means and areas."""
 
 from __future__ import annotations
 
@@ -14,12 +14,12 @@ def corners(grid: Array) -> tuple[Array, Array, Array, Array]:
     Parameters
     ----------
     grid : (..., j_max, i_max, n) array
-        At the nodes.
+        Values at the nodes.
 
     Returns
     -------
     tuple of four (..., j_max - 1, i_max - 1, n) arrays
-        From the lowest indices with i first.
+        Corners in order, from the lowest indices with i first.
     """
     low, high = grid[..., :-1, :, :], grid[..., 1:, :, :]
     return low[..., :-1, :], low[..., 1:, :], high[..., 1:, :], high[..., :-1, :]
@@ -31,12 +31,12 @@ def means(grid: Array) -> Array:
     Parameters
     ----------
     grid : (..., j_max, i_max, n) array
-        At the nodes.
+        Values at the nodes.
 
     Returns
     -------
     (..., j_max - 1, i_max - 1, n) array
-        In the cells.
+        Means in the cells.
     """
     a, b, c, d = corners(grid)
     return np.asarray(0.25 * (a + b + c + d))
@@ -48,12 +48,12 @@ def vector_areas(nodes: Array) -> Array:
     Parameters
     ----------
     nodes : (..., j_max, i_max, 3) array
-        Positions [m].
+        Positions of the nodes [m].
 
     Returns
     -------
     (..., j_max - 1, i_max - 1, 3) array
-        [m^2].
+        Vector areas of the cells [m^2].
     """
     a, b, c, d = corners(nodes)
     return np.asarray(0.5 * np.cross(c - a, d - b))

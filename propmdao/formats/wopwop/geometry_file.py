@@ -5,21 +5,13 @@ from __future__ import annotations
 from dataclasses import dataclass
 from pathlib import Path
 
-from propmdao.formats.wopwop.binary import Reader, Writer
-from propmdao.formats.wopwop.zones import (
-    Zone,
-    grid_of,
-    read_header,
-    read_layout,
-    read_zones,
-    time_dependence,
-    write_zones,
-)
+from propmdao.formats.wopwop.binary import GEOMETRY, Reader, Writer, read_opening, write_opening
+from propmdao.formats.wopwop.zones import Zone, layout_of, read_header, read_zones, write_zones
 
 
 @dataclass(frozen=True)
 class GeometryFile:
-    """A geometry file.
+    """Contents of a geometry file.
 
     Attributes
     ----------
@@ -46,12 +38,12 @@ def read_geometry(path: str | Path) -> GeometryFile:
     Parameters
     ----------
     path : str or Path
-        Single precision; constant, periodic or aperiodic.
+        File in single precision; constant, periodic or aperiodic.
 
     Returns
     -------
     GeometryFile
-        All of it, so that `write_geometry` gives back the same bytes.
+        All that the file holds, so that `write_geometry` gives back the same bytes.
 
     Raises
     ------
@@ -59,16 +51,12 @@ def read_geometry(path: str | Path) -> GeometryFile:
         If the file is not such a file, is truncated or too long.
     """
     file = Reader(Path(path))
-    file.version()
-    units, comment = file.text(32), file.text(1024)
-    file.expect(1, "file type (1 is a geometry)")
-    n_zones = file.count("number of zones")
-    grid, kind, at_faces = read_layout(file, "geometry")
+    (units, comment), n_zones, layout = read_opening(file, GEOMETRY)
     file.choose({1: "single"}, "precision")
     file.expect(0, "iblank flag")
     file.ints(1)
-    headers = [read_header(file, kind, grid, True) for _ in range(n_zones)]
-    zones = read_zones(file, headers, 3 if at_faces else 6, at_faces)
+    headers = [read_header(file, layout, has_faces=True) for _ in range(n_zones)]
+    zones = read_zones(file, headers, 3 if layout.at_faces else 6, layout.at_faces)
     return GeometryFile(zones, units, comment, file.byte_order, file.padding)
 
 
@@ -78,21 +66,19 @@ def write_geometry(path: str | Path, geometry: GeometryFile) -> None:
     Parameters
     ----------
     path : str or Path
-        Where to.
+        File to write.
     geometry : GeometryFile
-        All zones constant, all periodic or all aperiodic.
+        Its contents: all zones are constant, periodic or aperiodic.
 
     Raises
     ------
     ValueError
         If the zones do not go together or a text is too long.
     """
-    kind, zones = time_dependence(geometry.zones), geometry.zones
-    at_faces = zones[0].normals_at_faces is not None
+    zones = geometry.zones
+    layout = layout_of(zones, at_faces=any(zone.normals_at_faces is not None for zone in zones))
     out = Writer(geometry.byte_order, geometry.padding)
-    out.ints(1, 0)
-    out.text(geometry.units, 32)
-    out.text(geometry.comment, 1024)
-    out.ints(1, len(zones), grid_of(zones), kind, 2 if at_faces else 1, 1, 0, 0)
+    write_opening(out, GEOMETRY, (geometry.units, geometry.comment), len(zones), layout)
+    out.ints(1, 0, 0)  # single precision, no iblank values
     write_zones(out, zones)
     out.save(Path(path))

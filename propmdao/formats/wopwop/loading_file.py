@@ -5,16 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from pathlib import Path
 
-from propmdao.formats.wopwop.binary import Reader, Writer
-from propmdao.formats.wopwop.zones import (
-    Zone,
-    grid_of,
-    read_header,
-    read_layout,
-    read_zones,
-    time_dependence,
-    write_zones,
-)
+from propmdao.formats.wopwop.binary import LOADING, Reader, Writer, read_opening, write_opening
+from propmdao.formats.wopwop.zones import Zone, layout_of, read_header, read_zones, write_zones
 
 DATA = {1: "pressure", 2: "loading", 3: "flow"}
 N_COMPONENTS = {1: 1, 2: 3, 3: 5}
@@ -23,27 +15,29 @@ FRAMES = {1: "ground", 2: "mixed", 3: "patch"}
 
 @dataclass(frozen=True)
 class LoadingFile:
-    """A loading file.
+    """Contents of a loading file.
 
     Attributes
     ----------
     zones : tuple of Zone
         Data of the zones in `zone_numbers`.
     zone_numbers : tuple of int
-        Which zones of the geometry file they belong to, counted from 1; negative if thickness
+        Zones of the geometry file that the data belong to, counted from 1; negative if thickness
         noise is not wanted of that zone.
     n_geometry_zones : int
         Number of zones of the geometry file.
     data : int
-        1 surface gauge pressure, 2 loading vector, 3 flow.
+        Kind of the data: 1 surface gauge pressure, 2 loading vector, 3 flow.
     frame : int
-        Of the loading vector: 1 ground, 2 mixed, 3 patch.
+        Frame of the loading vectors: 1 ground, 2 mixed, 3 patch.
     at_faces : bool
-        Whether the values belong to faces, not nodes.
+        True if the values belong to faces, False if to nodes.
     comment : str
-        At most 1024 characters.
-    byte_order, padding
-        As in `GeometryFile`.
+        Text of at most 1024 characters.
+    byte_order : str
+        "<" little-endian or ">" big-endian.
+    padding : bytes
+        The byte that fills up texts.
     """
 
     zones: tuple[Zone, ...]
@@ -63,12 +57,12 @@ def read_loading(path: str | Path) -> LoadingFile:
     Parameters
     ----------
     path : str or Path
-        Single precision; constant, periodic or aperiodic.
+        File in single precision; constant, periodic or aperiodic.
 
     Returns
     -------
     LoadingFile
-        All of it, so that `write_loading` gives back the same bytes.
+        All that the file holds, so that `write_loading` gives back the same bytes.
 
     Raises
     ------
@@ -76,11 +70,7 @@ def read_loading(path: str | Path) -> LoadingFile:
         If the file is not such a file, is truncated or too long.
     """
     file = Reader(Path(path))
-    file.version()
-    comment = file.text(1024)
-    file.expect(2, "file type (2 is a loading)")
-    n_geometry_zones = file.count("number of zones of the geometry")
-    grid, kind, at_faces = read_layout(file, "loading")
+    (comment,), n_geometry_zones, layout = read_opening(file, LOADING)
     data = file.choose(DATA, "kind of the data")
     frame = file.choose(FRAMES, "frame of the loading vectors")
     file.choose({1: "single"}, "precision")
@@ -89,7 +79,7 @@ def read_loading(path: str | Path) -> LoadingFile:
     for number in numbers:
         if not 1 <= abs(number) <= n_geometry_zones:
             raise file.error(f"zone numbers must be 1 ... {n_geometry_zones}; one is {number}")
-    headers = [read_header(file, kind, grid, False) for _ in numbers]
+    headers = [read_header(file, layout, has_faces=False) for _ in numbers]
     zones = read_zones(file, headers, N_COMPONENTS[data])
     return LoadingFile(
         zones,
@@ -97,7 +87,7 @@ def read_loading(path: str | Path) -> LoadingFile:
         n_geometry_zones,
         data,
         frame,
-        at_faces,
+        layout.at_faces,
         comment,
         file.byte_order,
         file.padding,
@@ -110,21 +100,18 @@ def write_loading(path: str | Path, loading: LoadingFile) -> None:
     Parameters
     ----------
     path : str or Path
-        Where to.
+        File to write.
     loading : LoadingFile
-        All zones constant, all periodic or all aperiodic.
+        Its contents: all zones are constant, periodic or aperiodic.
 
     Raises
     ------
     ValueError
         If the zones do not go together or a text is too long.
     """
-    kind = time_dependence(loading.zones)
+    layout = layout_of(loading.zones, loading.at_faces)
     out = Writer(loading.byte_order, loading.padding)
-    out.ints(1, 0)
-    out.text(loading.comment, 1024)
-    grid = grid_of(loading.zones)
-    out.ints(2, loading.n_geometry_zones, grid, kind, 2 if loading.at_faces else 1)
+    write_opening(out, LOADING, (loading.comment,), loading.n_geometry_zones, layout)
     out.ints(loading.data, loading.frame, 1, 0, 0, len(loading.zones), *loading.zone_numbers)
     write_zones(out, loading.zones)
     out.save(Path(path))

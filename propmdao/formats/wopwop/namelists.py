@@ -14,8 +14,9 @@ from typing import Any
 import f90nml  # type: ignore[import-untyped]
 
 from propmdao.formats.wopwop.binary import WopwopFileError
+from propmdao.runtime.input_files import read_text
 
-#: Of angles that change periodically, A1 ... and B1 ...
+#: Numbers of the harmonics of angles that change periodically, A1 ... and B1 ...
 HARMONICS = range(1, 10)
 
 # Keys that are read by `cases`, and after the bar those that only choose what PSU-WOPWOP writes,
@@ -48,11 +49,11 @@ class Group:
     Attributes
     ----------
     name : str
-        Lower case, without the ampersand.
+        Name in lower case, without the ampersand.
     values : mapping
         Lower-case keys to numbers, texts, logicals or lists of them.
     path : Path
-        Of the file.
+        Namelist file that the group is in.
     """
 
     name: str
@@ -71,28 +72,28 @@ class Group:
         """Return a number, or the default; refuse the file if there is neither."""
         value = self.values.get(key, default)
         if value is None or (key in self.values and not _is_number(value)):
-            raise self.error(f"{key} must be a number; " + _found(value))
+            raise self.error(f"{key} must be a number; " + _it_is(value))
         return float(value)
 
     def count(self, key: str, default: int | None = None) -> int:
         """Return a whole number of at least 0, or the default."""
         value = self.values.get(key, default)
         if isinstance(value, bool) or not isinstance(value, int) or value < 0:
-            raise self.error(f"{key} must be a whole number, 0 or more; " + _found(value))
+            raise self.error(f"{key} must be a whole number, 0 or more; " + _it_is(value))
         return value
 
     def vector(self, key: str) -> tuple[float, float, float]:
         """Return three numbers, zeros if they are not given."""
         value = self.values.get(key, [0.0, 0.0, 0.0])
         if not isinstance(value, list) or not all(map(_is_number, value)) or len(value) != 3:
-            raise self.error(f"{key} must be three numbers; " + _found(value))
+            raise self.error(f"{key} must be three numbers; " + _it_is(value))
         return float(value[0]), float(value[1]), float(value[2])
 
     def text(self, key: str) -> str | None:
         """Return a text or None."""
         value = self.values.get(key)
         if value is not None and not isinstance(value, str):
-            raise self.error(f"{key} must be a text in quotes; " + _found(value))
+            raise self.error(f"{key} must be a text in quotes; " + _it_is(value))
         return value
 
 
@@ -102,12 +103,12 @@ def read_namelists(path: str | Path) -> list[Group]:
     Parameters
     ----------
     path : str or Path
-        Text file.
+        Namelist file.
 
     Returns
     -------
     list of Group
-        In order. A `UserWarning` names every key that is not known.
+        The groups in order. A `UserWarning` names every key that is not known.
 
     Raises
     ------
@@ -115,10 +116,7 @@ def read_namelists(path: str | Path) -> list[Group]:
         If the file is missing or holds no namelist.
     """
     path = Path(path)
-    try:
-        text = path.read_text(encoding="latin-1")
-    except OSError as error:
-        raise WopwopFileError(f"{path}: {error.strerror or error}") from None
+    text = read_text(path, WopwopFileError, complaint=str(path), encoding="latin-1")
     try:
         with contextlib.redirect_stdout(io.StringIO()):  # it prints its tables on broken quotes
             parsed = f90nml.reads(text)
@@ -143,9 +141,9 @@ def write_namelists(path: str | Path, groups: Iterable[tuple[str, Mapping[str, A
     Parameters
     ----------
     path : str or Path
-        Where to.
+        File to write.
     groups : iterable of (str, mapping)
-        Names and values in the order wanted; names may repeat.
+        Names and values of the groups, in the order of the file; names may repeat.
     """
     out = io.StringIO()
     for name, values in groups:
@@ -157,5 +155,5 @@ def _is_number(value: Any) -> bool:
     return isinstance(value, int | float) and not isinstance(value, bool) and math.isfinite(value)
 
 
-def _found(value: Any) -> str:
+def _it_is(value: Any) -> str:
     return "it is missing" if value is None else f"it is {value!r}"

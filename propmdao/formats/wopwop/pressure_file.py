@@ -1,4 +1,4 @@
-"""Pressure histories that PSU-WOPWOP has written: PLOT3D of a grid of observers, Tecplot of one."""
+"""Pressures that PSU-WOPWOP has written: PLOT3D files for a grid of observers, Tecplot for one."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from propmdao.formats.wopwop.binary import WopwopFileError
+from propmdao.runtime.input_files import read_bytes, read_text
 
 
 @dataclass(frozen=True)
@@ -18,7 +19,7 @@ class PressureHistories:
     Attributes
     ----------
     position : (n_observers, n_times, 3) array
-        Of each observer at each time [m]; NaN if the file does not say.
+        Positions of each observer at each time [m]; NaN if the file does not hold them.
     time : (n_observers, n_times) array
         Observer times [s].
     thickness, loading, total : (n_observers, n_times) arrays
@@ -44,7 +45,7 @@ def read_pressure(stem: str | Path) -> PressureHistories:
     Returns
     -------
     PressureHistories
-        Observers with i fastest, then j.
+        Pressures of the observers, those with i fastest, then j.
 
     Raises
     ------
@@ -87,22 +88,22 @@ def _by_name(
     path: Path, labels: list[str], functions: NDArray[np.float64]
 ) -> list[NDArray[np.float64]]:
     """Return time, thickness, loading and total pressure out of functions in any order."""
-    found = []
+    parts = []
     for word in ("time", "thickness", "loading", "total"):
-        which = [k for k, label in enumerate(labels) if word in label.lower()]
-        if not which:
+        indices = [k for k, label in enumerate(labels) if word in label.lower()]
+        if not indices:
             raise WopwopFileError(f"{path}: no {word!r} among {', '.join(labels)}")
-        found.append(functions[which[0]])
-    return found
+        parts.append(functions[indices[0]])
+    return parts
 
 
 def _table(path: Path, n_sizes: int) -> tuple[list[int], NDArray[np.float64]]:
     """Return the sizes and an array (functions, times, observers)."""
-    try:
-        binary = b"\0" in path.read_bytes()[: 4 * n_sizes]  # sizes have high bytes that are zero
-    except OSError as error:
-        raise WopwopFileError(f"{path}: {error.strerror or error}") from None
-    sizes, values = (_binary if binary else _text)(path, n_sizes)
+    data = read_bytes(path, WopwopFileError, complaint=str(path))
+    if b"\0" in data[: 4 * n_sizes]:  # sizes have high bytes that are zero
+        sizes, values = _binary(path, data, n_sizes)
+    else:
+        sizes, values = _text(path, n_sizes)
     i_max, j_max, n_times, n_functions = (*sizes, 3)[:4]
     if values.size != n_functions * n_times * j_max * i_max:
         raise WopwopFileError(f"{path}: {values.size} numbers do not fill its sizes {sizes}")
@@ -121,9 +122,8 @@ def _text(path: Path, n_sizes: int) -> tuple[list[int], NDArray[np.float64]]:
     return sizes, values
 
 
-def _binary(path: Path, n_sizes: int) -> tuple[list[int], NDArray[np.float64]]:
+def _binary(path: Path, data: bytes, n_sizes: int) -> tuple[list[int], NDArray[np.float64]]:
     """Sizes as 32-bit integers and values as 32-bit floats, in either byte order."""
-    data = path.read_bytes()
     if len(data) % 4 or len(data) < 4 * n_sizes:
         raise WopwopFileError(f"{path}: truncated: {len(data)} bytes are no whole 32-bit numbers")
     # In the wrong order small sizes are millions.
@@ -133,10 +133,5 @@ def _binary(path: Path, n_sizes: int) -> tuple[list[int], NDArray[np.float64]]:
 
 
 def _lines(path: Path) -> list[str]:
-    try:
-        lines = path.read_text(encoding="ascii").splitlines()
-    except UnicodeDecodeError:
-        raise WopwopFileError(f"{path}: not a text file") from None
-    except OSError as error:
-        raise WopwopFileError(f"{path}: {error.strerror or error}") from None
-    return [line.strip() for line in lines if line.strip()]
+    text = read_text(path, WopwopFileError, complaint=str(path), encoding="ascii")
+    return [line.strip() for line in text.splitlines() if line.strip()]

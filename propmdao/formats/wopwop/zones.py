@@ -7,13 +7,18 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from propmdao.formats.wopwop.binary import Floats, Reader, Writer
-
-TIMES = {1: "constant", 2: "periodic", 3: "aperiodic"}
-GRIDS = {1: "structured", 2: "unstructured"}
-STRUCTURED, UNSTRUCTURED = GRIDS
-CENTRED = {1: "at nodes", 2: "at faces"}
-_CONSTANT, _PERIODIC = 1, 2
+from propmdao.formats.wopwop.binary import (
+    APERIODIC,
+    CONSTANT,
+    PERIODIC,
+    STRUCTURED,
+    TIMES,
+    UNSTRUCTURED,
+    Floats,
+    Layout,
+    Reader,
+    Writer,
+)
 
 
 @dataclass(frozen=True)
@@ -23,19 +28,20 @@ class Zone:
     Attributes
     ----------
     name : str
-        At most 32 characters.
+        Name of at most 32 characters.
     values : (n_times, n_components, j_max, i_max) or (n_times, n_components, n) float32 array
-        Structured or unstructured. Of a geometry: x, y, z [m] of the nodes and the three components
-        of their normals. Of a loading: pressure [Pa], the force ON THE BLADE per area [N/m^2] or
-        per length of a line [N/m], or rho, rho u, rho v, rho w, p'. One time if constant.
+        Values on a structured or unstructured grid. In a geometry: x, y, z [m] of the nodes and the
+        three components of their normals. In a loading: pressure [Pa], the force ON THE BLADE per
+        area [N/m^2] or per length of a line [N/m], or rho, rho u, rho v, rho w, p'. There is one
+        time if they are constant.
     keys : (n_times,) float32 array or None
         Times [s], or periodic keys in any unit; None if constant.
     period : float or None
-        Of a periodic zone [s].
+        Period of a periodic zone [s].
     normals_at_faces : (n_times, 3, j_max - 1, i_max - 1) or (n_times, 3, n_faces) array or None
-        Of a geometry with face-centred normals; `values` then has the nodes alone.
+        Face-centred normals of a geometry that has them; `values` then has the nodes alone.
     faces : tuple of tuple of int
-        Of an unstructured geometry: the nodes around each face, counted from 1.
+        Nodes around each face of an unstructured geometry, counted from 1.
     """
 
     name: str
@@ -47,13 +53,13 @@ class Zone:
 
     @property
     def structured(self) -> bool:
-        """Whether the nodes are a grid."""
+        """True if the nodes are a structured grid."""
         return self.values.ndim == 4
 
 
 @dataclass(frozen=True)
 class ZoneHeader:
-    """What the header of a zone says: its name, size and times."""
+    """Header of a zone: its name, size and times."""
 
     name: str
     shape: tuple[int, ...]
@@ -63,55 +69,62 @@ class ZoneHeader:
 
     @property
     def shape_of_faces(self) -> tuple[int, ...]:
-        """As many faces as there are, in the order of the nodes."""
+        """Shape of values at the faces, in the order of the nodes."""
         return (len(self.faces),) if self.faces else tuple(max(n - 1, 1) for n in self.shape)
 
 
-def read_layout(file: Reader, contents: str) -> tuple[int, int, bool]:
-    """Read what the headers of both kinds of files say of their zones.
+def layout_of(zones: Sequence[Zone], at_faces: bool) -> Layout:
+    """Layout that all zones of a file have.
 
     Parameters
     ----------
-    file : Reader
-        At its grid.
-    contents : str
-        Of the file, to be named: "geometry" or "loading".
+    zones : sequence of Zone
+        Zones of one file.
+    at_faces : bool
+        True if normals or loads belong to faces.
 
     Returns
     -------
-    grid, kind : int
-        Of `GRIDS`, of `TIMES`.
-    at_faces : bool
-        Whether values or normals belong to faces, not nodes.
+    Layout
+        Layout that all of them have.
 
     Raises
     ------
-    WopwopFileError
-        If they are not known.
+    ValueError
+        If there are no zones, or they differ in their grids, time dependence or number of times.
     """
-    grid = file.choose(GRIDS, "grid")
-    kind = file.choose(TIMES, f"time dependence of the {contents}")
-    return grid, kind, file.choose(CENTRED, f"place of the {contents}'s values") == 2
+    times = {(_time_dependence(zone), len(zone.values)) for zone in zones}
+    if len(times) != 1:
+        listed = ", ".join(f"{TIMES[time]} with {n} times" for time, n in sorted(times)) or "none"
+        raise ValueError(f"zones of a file must have the same time dependence; got {listed}")
+    if len({zone.structured for zone in zones}) > 1:
+        raise ValueError("zones of a file must all be structured or all unstructured")
+    grid = STRUCTURED if zones[0].structured else UNSTRUCTURED
+    return Layout(grid, _time_dependence(zones[0]), at_faces)
 
 
-def read_header(file: Reader, kind: int, grid: int, has_faces: bool) -> ZoneHeader:
+def _time_dependence(zone: Zone) -> int:
+    if zone.keys is None:
+        return CONSTANT
+    return APERIODIC if zone.period is None else PERIODIC
+
+
+def read_header(file: Reader, layout: Layout, has_faces: bool) -> ZoneHeader:
     """Read the header of a zone.
 
     Parameters
     ----------
     file : Reader
-        At the beginning of the header.
-    kind : int
-        Time dependence, one of `TIMES`.
-    grid : int
-        One of `GRIDS`.
+        Reader at the beginning of the header.
+    layout : Layout
+        Layout of the file.
     has_faces : bool
-        Whether the faces of an unstructured zone are listed: in geometry files.
+        True if the faces of an unstructured zone are listed, as geometry files do.
 
     Returns
     -------
     ZoneHeader
-        As it stands.
+        The header as it stands.
 
     Raises
     ------
@@ -119,9 +132,9 @@ def read_header(file: Reader, kind: int, grid: int, has_faces: bool) -> ZoneHead
         If a face has fewer than three nodes or one that there is not.
     """
     name = file.text(32)
-    period = float(file.floats(1)[0]) if kind == _PERIODIC else None
-    n_times = file.count("number of times of a zone") if kind != _CONSTANT else None
-    if grid == STRUCTURED:
+    period = float(file.floats(1)[0]) if layout.time == PERIODIC else None
+    n_times = file.count("number of times of a zone") if layout.time != CONSTANT else None
+    if layout.grid == STRUCTURED:
         i_max, j_max = file.count("iMax"), file.count("jMax")
         return ZoneHeader(name, (j_max, i_max), (), period, n_times)
     n = file.count("number of nodes" if has_faces else "number of data")
@@ -145,18 +158,18 @@ def read_zones(
     Parameters
     ----------
     file : Reader
-        Behind the last header.
+        Reader behind the last header.
     headers : sequence of ZoneHeader
-        Of all zones with data.
+        Headers of all zones with data.
     n_components : int
         Number of values at each node.
     face_normals : bool
-        Whether three more follow for each face.
+        True if the three components of a normal follow for each face.
 
     Returns
     -------
     tuple of Zone
-        In the order of the headers.
+        The zones in the order of the headers.
 
     Raises
     ------
@@ -195,69 +208,15 @@ def read_zones(
     )
 
 
-def time_dependence(zones: Sequence[Zone]) -> int:
-    """Say which of `TIMES` all of the zones are.
-
-    Parameters
-    ----------
-    zones : sequence of Zone
-        Of one file.
-
-    Returns
-    -------
-    int
-        1 constant, 2 periodic or 3 aperiodic.
-
-    Raises
-    ------
-    ValueError
-        If they differ, or in their number of times, or there are none.
-    """
-    kinds = {
-        (
-            _CONSTANT if zone.keys is None else 3 if zone.period is None else _PERIODIC,
-            len(zone.values),
-        )
-        for zone in zones
-    }
-    if len(kinds) != 1:
-        found = ", ".join(f"{TIMES[kind]} with {n} times" for kind, n in sorted(kinds)) or "none"
-        raise ValueError(f"zones of a file must have the same time dependence; got {found}")
-    return kinds.pop()[0]
-
-
-def grid_of(zones: Sequence[Zone]) -> int:
-    """Say which of `GRIDS` all of the zones are.
-
-    Parameters
-    ----------
-    zones : sequence of Zone
-        Of one file.
-
-    Returns
-    -------
-    int
-        1 structured or 2 unstructured.
-
-    Raises
-    ------
-    ValueError
-        If they differ.
-    """
-    if len({zone.structured for zone in zones}) > 1:
-        raise ValueError("zones of a file must all be structured or all unstructured")
-    return STRUCTURED if zones[0].structured else UNSTRUCTURED
-
-
 def write_zones(out: Writer, zones: Sequence[Zone]) -> None:
     """Append headers and data of zones.
 
     Parameters
     ----------
     out : Writer
-        Behind the header of the file.
+        Writer behind the numbers of the file's own.
     zones : sequence of Zone
-        Of the same time dependence.
+        Zones with one layout.
     """
     for zone in zones:
         out.text(zone.name, 32)

@@ -14,6 +14,7 @@ from propmdao.propeller.airfoils.airfoil import (
     AirfoilError,
     FloatArray,
 )
+from propmdao.runtime.input_files import read_text, table_rows
 
 
 def airfoil_from_coordinates(name: str, x: FloatArray, z: FloatArray, source: str = "") -> Airfoil:
@@ -22,12 +23,12 @@ def airfoil_from_coordinates(name: str, x: FloatArray, z: FloatArray, source: st
     Parameters
     ----------
     name : str
-        What the section is called.
+        Name of the section.
     x, z : (n,) arrays
         Contour of unit chord from the trailing edge over the upper side to the leading edge at
         the origin and back along the lower side (Selig's order).
     source : str
-        Where the coordinates come from.
+        Origin of the coordinates.
 
     Returns
     -------
@@ -94,23 +95,10 @@ def read_coordinates(path: Path) -> Airfoil:
     AirfoilError
         If the file cannot be read or holds no airfoil.
     """
-    try:
-        lines = path.read_text(encoding="utf-8", errors="replace").splitlines()
-    except OSError as error:
-        raise AirfoilError(f"airfoil file '{path}' cannot be read: {error.strerror}") from error
-    rows = []
-    for number, line in enumerate(lines, start=1):
-        if not line.strip():
-            continue
-        try:
-            x, z = (float(field) for field in line.split())
-        except ValueError as error:
-            if number == 1:
-                continue
-            raise AirfoilError(
-                f"airfoil file '{path}', line {number}: two numbers x z expected, not '{line}'"
-            ) from error
-        rows.append((x, z))
+    label = f"airfoil file '{path}'"
+    # Titles may be in any encoding, the numbers are ASCII.
+    text = read_text(path, AirfoilError, complaint=f"{label} cannot be read", undecodable="replace")
+    rows = table_rows(text, 2, "two numbers x z", AirfoilError, label)
     points = np.array(rows).reshape(-1, 2)
     if points.size and points[0, 0] > 1.5:
         n_upper = int(points[0, 0])

@@ -263,7 +263,7 @@ class TestPressure:
             ("fn", "", "do not fill its sizes"),
             ("x", "1 1 3\n" + "1 " * 9, "do not go together"),
             ("nam", NAMES + " other", "no 'total' among"),
-            ("x", "\x80\x81", "not a text file"),
+            ("x", "\x80\x81", "it is not text in ASCII"),
         ],
     )
     def test_broken_files(self, stem, ending, content, message):

@@ -1,4 +1,4 @@
-"""The table that a sweep grows: what is in it stays, digit by digit."""
+"""The table to which a sweep adds rows: what is in it stays, digit by digit."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from propmdao.analysis.result_table import ResultTable, table_files
+from propmdao.formats.result_table import ResultTable, table_files
 
 POINT = {"name": "blade, new", "rpm": 0.1 + 0.2}
 
@@ -39,7 +39,7 @@ def test_numbers_are_read_back_with_every_digit(path: Path) -> None:
     assert math.isnan(float(last["thrust"]))
 
 
-def test_a_table_is_gone_on_with(path: Path) -> None:
+def test_rows_are_added_to_an_existing_table(path: Path) -> None:
     rows = table(path)
     assert len(rows) == 3
     assert POINT in rows and POINT | {"rpm": 4.0} not in rows
@@ -49,7 +49,9 @@ def test_a_table_is_gone_on_with(path: Path) -> None:
 
 
 @pytest.mark.parametrize("n_bytes", [1, 20])
-def test_what_a_kill_has_left_of_a_row_is_cut_off(path: Path, n_bytes: int) -> None:
+def test_a_piece_of_a_row_that_a_killed_process_has_left_is_cut_off(
+    path: Path, n_bytes: int
+) -> None:
     whole = path.read_bytes()
     path.write_bytes(whole + b'"blade, new",4.0,1.0,True,ok,'[:n_bytes])
     assert len(table(path)) == 3
@@ -86,7 +88,7 @@ def test_a_row_that_does_not_fit_is_named(path: Path) -> None:
         table(path)
 
 
-def test_missing_points_each_once_in_their_order(path: Path) -> None:
+def test_missing_points_are_listed_once_each_in_their_order(path: Path) -> None:
     points = [POINT | {"rpm": rpm} for rpm in (5.0, 2.0, 4.0, 5.0, 3.0)]
     assert table(path).missing(points) == [0, 2]
     assert table(path).row(points[1])["reason"] == "out of reach, at 2 rpm"

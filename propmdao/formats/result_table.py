@@ -14,18 +14,18 @@ STATUS, REASON = "status", "reason"
 
 
 class ResultTable:
-    """Rows of points, whose results are added to a file as they come.
+    """A CSV file with a row for each point, to which results are added as they come.
 
-    The file has a header, the columns of the point, those of its results, ``status`` ("ok" or
-    "failed") and ``reason`` (of a failure, on one line). An existing file is gone on with, and what
-    a killed process has left of a row is cut off.
+    The file has a header and these columns: those of the point, those of its results, ``status``
+    ("ok" or "failed") and ``reason`` (the reason of a failure, on one line). Rows are added to an
+    existing file, after the piece of a row that a killed process may have left has been cut off.
 
     Parameters
     ----------
     path : path
-        CSV file; it and its folder are made where there is none.
+        CSV file; it and its folder are made if there is none.
     point_columns, result_columns : sequence of str
-        Names of what distinguishes points, and of what is found for them.
+        Names of the columns that tell points apart, and of those for their results.
 
     Raises
     ------
@@ -50,7 +50,7 @@ class ResultTable:
             self.path.write_text(_line(self._columns), encoding="utf-8")
 
     def __contains__(self, point: Mapping[str, Value]) -> bool:
-        """Whether there is a row of a point."""
+        """True if the table has a row for the point."""
         return self._key(point) in self._rows
 
     def __len__(self) -> int:
@@ -58,9 +58,9 @@ class ResultTable:
         return len(self._rows)
 
     def missing(self, points: Sequence[Mapping[str, Value]]) -> list[int]:
-        """Places of those of the points that have no row, each point once."""
-        places = {self._key(point): place for place, point in reversed([*enumerate(points)])}
-        return sorted(place for key, place in places.items() if key not in self._rows)
+        """Indices of the points that have no row yet, each point once."""
+        first = {self._key(point): index for index, point in reversed([*enumerate(points)])}
+        return sorted(index for key, index in first.items() if key not in self._rows)
 
     def row(self, point: Mapping[str, Value]) -> dict[str, str]:
         """Return the cells of a point's row by column."""
@@ -78,7 +78,7 @@ class ResultTable:
         results : mapping
             Values of the result columns; one that is missing leaves its cell empty.
         reason : str
-            Why the point has failed, empty when it has not.
+            Reason why the point has failed; empty if it has not.
         """
         row = {**point, **results}
         row |= {STATUS: "failed" if reason else "ok", REASON: " ".join(reason.split())}
@@ -89,7 +89,7 @@ class ResultTable:
         self._rows[self._key(point)] = cells
 
     def failures(self, points: Sequence[Mapping[str, Value]]) -> list[str]:
-        """Reasons of those of the points that have failed."""
+        """Reason of each of the points that has failed."""
         rows = [self._rows[self._key(point)] for point in points]
         return [reason for *_, status, reason in rows if status == "failed"]
 
@@ -136,19 +136,19 @@ class ResultTable:
 
 
 def table_files(path: str | os.PathLike[str]) -> tuple[Path, Path | None]:
-    """Files of a table that a user names.
+    """CSV and Parquet file for the name that a user has given a table.
 
     Parameters
     ----------
     path : path
-        With the ending .csv, or .parquet for a Parquet file beside the CSV file of the same name.
+        Name with the ending .csv, or .parquet for a Parquet file beside a CSV file of that name.
 
     Returns
     -------
     csv_file : pathlib.Path
-        File that grows.
+        File that grows row by row.
     parquet_file : pathlib.Path or None
-        File that is to be written at the end, if one is asked for.
+        File that is to be written at the end, if the name asks for one.
 
     Raises
     ------
@@ -166,13 +166,14 @@ def table_files(path: str | os.PathLike[str]) -> tuple[Path, Path | None]:
 
 
 def _differences(there: list[str], here: list[str]) -> str:
+    """Name the columns that only one of two headers has."""
     only = [f"{name} only there" for name in there if name not in here][:3]
     only += [f"{name} only here" for name in here if name not in there][:3]
     return ", ".join(only) or "their order"
 
 
 def _text(value: Value) -> str:
-    """Text from which a number is read back with every digit."""
+    """Text of a value; a number is read back from it with every digit."""
     return value if isinstance(value, str) else repr(value)
 
 

@@ -1,0 +1,126 @@
+"""The formats of propellers and polars by the ending of a file's name.
+
+A new format is a module with a function that reads or writes it, and a line in a table here.
+"""
+
+from __future__ import annotations
+
+import pkgutil
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+
+@dataclass(frozen=True)
+class FileFormat:
+    """A format of files, to be called like the function that reads or writes one.
+
+    Attributes
+    ----------
+    contents : str
+        Description of such a file in help texts and messages.
+    function : str
+        Function as ``module:name``. It is imported when a file is read or written, for help texts
+        show these tables too, and what readers and writers need takes seconds to import.
+    """
+
+    contents: str
+    function: str
+
+    def __call__(self, *arguments: Any) -> Any:
+        """Read or write a file."""
+        return pkgutil.resolve_name(self.function)(*arguments)
+
+
+@dataclass(frozen=True)
+class PropellerWriter(FileFormat):
+    """A format that propellers are written in; its function returns the number of its items.
+
+    Attributes
+    ----------
+    items : str
+        Name of the items that are counted: stations, triangles.
+    of_section : bool
+        True if the file holds one section, whose r/R the function takes as its third argument.
+    """
+
+    items: str = "stations"
+    of_section: bool = False
+
+
+@dataclass(frozen=True)
+class PolarReader(FileFormat):
+    """A format of polars; its function takes the files of one section.
+
+    Attributes
+    ----------
+    several : bool
+        True if a section may have several files, one for each Reynolds number.
+    """
+
+    several: bool = False
+
+
+_UIUC = FileFormat(
+    "geometry file of UIUC, named like apcsf_9x4.7_geom.txt",
+    "propmdao.formats.uiuc:read_named_uiuc_geometry",
+)
+
+#: Readers of propellers: functions of a path that return a `Propeller`.
+PROPELLER_READERS = {
+    ".toml": FileFormat("propeller file", "propmdao.formats.toml_files:read_toml"),
+    ".txt": _UIUC,
+    ".dat": _UIUC,
+}
+
+#: Writers of propellers: functions of a path and a `Propeller`.
+PROPELLER_WRITERS = {
+    ".stl": PropellerWriter(
+        "closed surface of all blades, outward, binary, in metres (no hub)",
+        "propmdao.formats.blades:export_stl",
+        "triangles, metres",
+    ),
+    ".toml": PropellerWriter(
+        "propeller file, as propmdao reads it", "propmdao.formats.toml_files:write_toml"
+    ),
+    ".csv": PropellerWriter(
+        "chord, blade angle, thickness, camber, sweep and rake at the stations",
+        "propmdao.formats.blades:export_csv",
+    ),
+    ".dat": PropellerWriter(
+        "section at --section, x and z over chord in Selig's order",
+        "propmdao.formats.blades:export_section",
+        "points",
+        of_section=True,
+    ),
+}
+
+#: Readers of polars: functions of paths that return a `PolarTable`. The empty ending stands for any
+#: that is not in the table, for XFOIL lets its users name polars as they like.
+POLAR_READERS = {
+    ".c81": PolarReader("C81 file", "propmdao.formats.polars:read_c81"),
+    "": PolarReader(
+        "polar of XFOIL or XFLR5, one for each Reynolds number",
+        "propmdao.formats.polars:read_polars",
+        several=True,
+    ),
+}
+
+
+def described(formats: Mapping[str, FileFormat]) -> str:
+    """List formats for a help text or a message.
+
+    Parameters
+    ----------
+    formats : mapping of str to FileFormat
+        One of the tables here.
+
+    Returns
+    -------
+    str
+        Endings and contents, as in ".toml (propeller file), .txt or .dat (...)".
+    """
+    endings: dict[str, list[str]] = {}
+    for ending, form in formats.items():
+        endings.setdefault(form.contents, []).append(ending or "any other ending")
+    return ", ".join(f"{' or '.join(names)} ({contents})" for contents, names in endings.items())
