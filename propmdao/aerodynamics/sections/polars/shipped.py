@@ -28,6 +28,10 @@ THICKNESS: FloatArray = np.array([0.03, 0.045, 0.065, 0.09, 0.12, 0.155, 0.19, 0
 CLARKY_SHARES = {"e63": 0.0, "e63-clarky": 0.5, "clarky": 1.0}
 #: Shapes of the file: the NACA 4-digit series with its maximum camber at 0.4 c, and the blends.
 SHAPES = ("naca4", *CLARKY_SHARES)
+#: Critical amplification of e^n transition in the tables, the same for every blade: moulded edges,
+#: and air that other blades have stirred. A clean wind tunnel has 9 to 12, a dirty one 4 to 8
+#: (Drela, XFOIL user guide); studies/aerodynamic_sensitivity.py shows what it changes.
+SHIPPED_N_CRIT = 5.0
 
 #: Units of the whole numbers in the file: of cl, ln(cd), cm.
 _UNIT = np.array([2e-4, 2e-4, 2e-5])[:, None, None]
@@ -83,7 +87,7 @@ def generate(path: Path) -> None:
     """
     packed, lows, highs = [], [], []
     for name in SHAPES:
-        coefficients, confidence = neuralfoil_grid(*shape(name), CAMBER, THICKNESS)
+        coefficients, confidence = neuralfoil_grid(*shape(name), CAMBER, THICKNESS, SHIPPED_N_CRIT)
         low, high = limits(coefficients, confidence)
         coefficients[:, :, 1] = np.log(coefficients[:, :, 1])
         # Second differences over angle are small whole numbers, which pack to a third.
@@ -99,7 +103,7 @@ def generate(path: Path) -> None:
         camber=CAMBER,
         thickness=THICKNESS,
         reynolds=REYNOLDS,
-        settings=np.array(neuralfoil_settings()),
+        settings=np.array(neuralfoil_settings(SHIPPED_N_CRIT)),
     )
 
 
