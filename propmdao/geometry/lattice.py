@@ -18,7 +18,7 @@ def lattice_span(root_r_over_R: float, n_spanwise: int) -> npt.NDArray[np.float6
     Parameters
     ----------
     root_r_over_R : float
-        Where the blade begins.
+        Radius at which the blade begins, r/R.
     n_spanwise : int
         Number of panels over the span.
 
@@ -132,7 +132,7 @@ def lattice_chord_fraction(n_chordwise: int) -> npt.NDArray[np.float64]:
     Returns
     -------
     (n_chordwise + 1,) array
-        From the leading edge, 0, to the trailing edge, 1.
+        Fractions that rise from 0 at the leading edge to 1 at the trailing edge.
     """
     return 0.5 * (1.0 - np.cos(np.linspace(0.0, np.pi, n_chordwise + 1)))
 

@@ -20,7 +20,7 @@ def surface_span(root_r_over_R: float, n_span: int) -> npt.NDArray[np.float64]:
     Parameters
     ----------
     root_r_over_R : float
-        Where the blade begins.
+        Radius at which the blade begins, r/R.
     n_span : int
         Number of contours (OpenVSP's Tess_U), at least 2.
 
@@ -96,7 +96,7 @@ def surface_quads(nodes: jax.Array) -> tuple[jax.Array, jax.Array, jax.Array, ja
     Parameters
     ----------
     nodes : (n_contour, n_span, 3) array
-        Points of `surface_nodes`.
+        Points of the section contours, as `surface_nodes` makes them [m].
 
     Returns
     -------
@@ -119,17 +119,17 @@ def surface_quads(nodes: jax.Array) -> tuple[jax.Array, jax.Array, jax.Array, ja
 
 
 def surface_panels(nodes: jax.Array) -> Panels:
-    """Panels of the watertight surface.
+    """Compute the panels of the watertight surface.
 
     Parameters
     ----------
     nodes : (n_contour, n_span, 3) array
-        Points of `surface_nodes`.
+        Points of the section contours, as `surface_nodes` makes them [m].
 
     Returns
     -------
     Panels
-        In the order of `surface_quads`.
+        Centres and area vectors, in the order of `surface_quads`.
     """
     a, b, c, d = surface_quads(nodes)
     return Panels(center=0.25 * (a + b + c + d), vector_area=0.5 * jnp.cross(c - a, d - b))

@@ -55,7 +55,7 @@ def neuralfoil_polar(
     re: FloatArray,
     n_crit: float,
 ) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
-    """Coefficients of one section over angles and Reynolds numbers.
+    """Compute the coefficients of a section over angles and Reynolds numbers.
 
     Parameters
     ----------
@@ -72,7 +72,7 @@ def neuralfoil_polar(
     Returns
     -------
     cl, cd, cm, confidence : (n_re, n_alpha) arrays
-        Coefficients, the moment about the quarter chord; NeuralFoil's confidence, 0..1.
+        Coefficients, the moment about the quarter chord, and NeuralFoil's confidence, 0..1.
 
     Notes
     -----
@@ -109,7 +109,7 @@ def neuralfoil_grid(
     max_thickness: FloatArray,
     n_crit: float,
 ) -> tuple[FloatArray, FloatArray]:
-    """Polars of a section shape over maximum camber and maximum thickness.
+    """Compute the polars of a section shape over maximum camber and maximum thickness.
 
     Parameters
     ----------
@@ -123,9 +123,9 @@ def neuralfoil_grid(
     Returns
     -------
     coefficients : (n_camber, n_thickness, 3, n_re, n_alpha) array
-        cl, cd, cm at `REYNOLDS` and `high_angle.ATTACHED_DEG`.
+        Coefficients cl, cd, cm at `REYNOLDS` and `high_angle.ATTACHED_DEG`.
     confidence : (n_camber, n_thickness, n_re, n_alpha) array
-        NeuralFoil's confidence.
+        NeuralFoil's confidence, 0..1.
     """
     polars = np.stack(
         [

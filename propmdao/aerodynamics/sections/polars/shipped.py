@@ -1,4 +1,4 @@
-"""The tables that ship: which shapes they hold, how they are packed in their file."""
+"""The tables that ship: the shapes they hold, how they are packed in their file."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ class ShippedTables:
     Attributes
     ----------
     values : dict of (n_camber, n_thickness, 3, n_re, n_alpha) arrays
-        By shape; cambers are `CAMBER` and its mirror image.
+        Coefficients cl, ln(cd), cm by shape; the cambers are `CAMBER` and its mirror image.
     settings : str
         Program, version and settings, one line.
     """
@@ -54,17 +54,17 @@ class ShippedTables:
 
 
 def shape(name: str) -> tuple[FloatArray, FloatArray]:
-    """Camber line and thickness of a shape, each scaled to a maximum of 1.
+    """Get camber line and thickness of a shape, each scaled to a maximum of 1.
 
     Parameters
     ----------
     name : str
-        One of `SHAPES`.
+        Name of the shape, one of `SHAPES`.
 
     Returns
     -------
     camber, thickness : (n_chord,) arrays
-        On `propmdao.propeller.airfoils.airfoil.CHORD_FRACTION`.
+        Camber line and full thickness on `propmdao.propeller.airfoils.airfoil.CHORD_FRACTION`.
     """
     if name == "naca4":
         section = naca4(1.0, 0.4, 1.0)
@@ -83,7 +83,7 @@ def generate(path: Path) -> None:
     Parameters
     ----------
     path : Path
-        Where to write.
+        File to write.
     """
     packed, lows, highs = [], [], []
     for name in SHAPES:
@@ -108,12 +108,14 @@ def generate(path: Path) -> None:
 
 
 def limits(coefficients: FloatArray, confidence: FloatArray) -> tuple[IntArray, IntArray]:
-    """Find where each polar of a grid holds, by `trusted_range`.
+    """Find between which angles each polar of a grid holds, by `trusted_range`.
 
     Parameters
     ----------
-    coefficients, confidence : (n_camber, n_thickness, 3, n_re, n_attached) and without the 3
-        As `neuralfoil_grid` returns them.
+    coefficients : (n_camber, n_thickness, 3, n_re, n_attached) array
+        Coefficients as `neuralfoil_grid` returns them.
+    confidence : (n_camber, n_thickness, n_re, n_attached) array
+        NeuralFoil's confidence.
 
     Returns
     -------
@@ -126,7 +128,7 @@ def limits(coefficients: FloatArray, confidence: FloatArray) -> tuple[IntArray, 
 
 
 def unpack(packed: npt.NDArray[np.int16]) -> FloatArray:
-    """Coefficients from the whole numbers of the file.
+    """Turn the whole numbers of the file into coefficients.
 
     Parameters
     ----------
@@ -136,7 +138,7 @@ def unpack(packed: npt.NDArray[np.int16]) -> FloatArray:
     Returns
     -------
     array of the same shape
-        cl, cd, cm.
+        Coefficients cl, cd, cm.
     """
     whole = np.cumsum(np.cumsum(packed.astype(np.int64), axis=-1), axis=-1)
     coefficients: FloatArray = whole * _UNIT
@@ -150,7 +152,7 @@ def read_tables(file: str | Path | IO[bytes]) -> ShippedTables:
     Parameters
     ----------
     file : path or binary file
-        What `generate` wrote.
+        File that `generate` has written.
 
     Returns
     -------

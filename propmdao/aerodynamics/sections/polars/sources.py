@@ -1,4 +1,4 @@
-"""Where the polars of a propeller's airfoils come from: the catalogue, NeuralFoil or the user."""
+"""Origin of the polars of a propeller's airfoils: the catalogue, NeuralFoil or the user."""
 
 from __future__ import annotations
 
@@ -117,12 +117,13 @@ def _source(name: str, own: Mapping[str, PolarTable], n_crit: float) -> PolarSou
             "installed: pip install 'propmdao[polars]', or take the catalogue's n_crit "
             f"{SHIPPED_N_CRIT:g}"
         )
-    made, catalogue = f"NeuralFoil, n_crit {n_crit:g}", f"catalogue, n_crit {SHIPPED_N_CRIT:g}"
-    known = _catalogue_shape(name)
-    if known is not None:
-        return PolarSource(known, catalogue if shipped else made)
+    catalogue = f"catalogue, n_crit {SHIPPED_N_CRIT:g}"
+    neuralfoil = f"NeuralFoil, n_crit {n_crit:g}"
+    plain = _catalogue_shape(name)
+    if plain is not None:
+        return PolarSource(plain, catalogue if shipped else neuralfoil)
     if installed:
-        return PolarSource(name, made)
+        return PolarSource(name, neuralfoil)
     text = f"{catalogue}, a NACA 4-digit section in its place"
     return PolarSource("naca4", text, substitute=True)
 

@@ -88,8 +88,7 @@ def test_c1_in_angle_and_reynolds_number(section: Section, alpha_deg: float) -> 
     table = section("e63")
 
     def coefficients(alpha: jax.Array, log_re: jax.Array) -> jax.Array:
-        found = section_coefficients(table, alpha[None], jnp.exp(log_re)[None])
-        return jnp.concatenate(found)
+        return jnp.concatenate(section_coefficients(table, alpha[None], jnp.exp(log_re)[None]))
 
     jacobian = jax.jacfwd(coefficients, (0, 1))
     alpha, log_re = jnp.radians(alpha_deg), jnp.log(1e5)  # 1e5 is a node of the table
@@ -208,7 +207,7 @@ def test_sections_between_the_nodes_are_near_neuralfoil(
         polars, polars.weights[1:2], jnp.array([camber.max()]), jnp.array([thickness.max()])
     )
     repeated = dataclasses.replace(table, values=jnp.repeat(table.values, alpha.size, axis=0))
-    found = section_coefficients(repeated, jnp.radians(alpha), jnp.full(alpha.size, re))
+    between = section_coefficients(repeated, jnp.radians(alpha), jnp.full(alpha.size, re))
     exact = neuralfoil_polar(camber, thickness, alpha, np.array([re]), SHIPPED_N_CRIT)
-    differences = [np.abs(np.asarray(found[k]) - exact[k][0]).mean() for k in range(2)]
+    differences = [np.abs(np.asarray(between[k]) - exact[k][0]).mean() for k in range(2)]
     np.testing.assert_allclose(differences, BETWEEN_NODES[case], rtol=0.1)
