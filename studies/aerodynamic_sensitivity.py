@@ -13,7 +13,6 @@ from collections.abc import Iterator
 from functools import lru_cache, partial
 from pathlib import Path
 from typing import Any
-from unittest import mock
 
 import jax
 import jax.numpy as jnp
@@ -114,8 +113,7 @@ def polars_at(propeller: Propeller, n_crit: float) -> SectionPolars:
 
 @lru_cache
 def _shape_at(name: str, n_crit: float) -> np.ndarray:
-    with mock.patch.object(neuralfoil_tables, "N_CRIT", n_crit):
-        grid = neuralfoil_tables.neuralfoil_grid(*shape(name), CAMBER, THICKNESS)
+    grid = neuralfoil_tables.neuralfoil_grid(*shape(name), CAMBER, THICKNESS, n_crit)
     return shape_values(grid[0], *limits(*grid))
 
 

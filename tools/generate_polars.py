@@ -13,7 +13,9 @@ from pathlib import Path
 
 from propmdao.aerodynamics.sections.polars.shipped import generate, read_tables
 
-DEFAULT = Path(__file__).parents[1] / "propmdao" / "catalog" / "polars" / "sections.npz"
+DEFAULT = (
+    Path(__file__).parents[1] / "propmdao" / "propeller" / "catalog" / "polars" / "sections.npz"
+)
 
 if __name__ == "__main__":
     path = Path(sys.argv[1]) if len(sys.argv) > 1 else DEFAULT

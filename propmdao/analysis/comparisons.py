@@ -15,9 +15,9 @@ from propmdao.analysis.single_point import Analysis
 
 Row = tuple[str, str, str]
 Cell = float | str | None
-Rows = list[tuple[str, ...]]  # of a table, its head first
+Rows = list[tuple[str, ...]]  # rows of a table, its head first
 
-#: Rows of an operating point and what one observer hears: label, key, format.
+#: Rows of an operating point and the levels at one observer: label, key, format.
 ROWS: tuple[Row, ...] = (
     ("rotation speed, rpm", "rpm", ".0f"),
     ("thrust, N", "thrust", ".2f"),
@@ -33,14 +33,14 @@ ROWS: tuple[Row, ...] = (
 
 
 def at_observer(analysis: Analysis, observer: int = 0) -> dict[str, float]:
-    """Flatten an analysis to what `ROWS` names.
+    """Flatten an analysis to the numbers that `ROWS` names.
 
     Parameters
     ----------
     analysis : Analysis
         Result of `propmdao.analysis.single_point.analyze`, with observers.
     observer : int
-        Which of them.
+        Index of the observer.
 
     Returns
     -------
@@ -48,8 +48,8 @@ def at_observer(analysis: Analysis, observer: int = 0) -> dict[str, float]:
         Numbers by the keys of ``propmdao analyze --json``, and ``bpf_hz``.
     """
     values = analysis.to_dict()
-    heard = values.pop("observers")[observer]
-    values |= heard | {"bpf_hz": heard["harmonics"][0]["frequency_hz"]}
+    levels = values.pop("observers")[observer]
+    values |= levels | {"bpf_hz": levels["harmonics"][0]["frequency_hz"]}
     return {key: value for key, value in values.items() if isinstance(value, float)}
 
 
@@ -61,7 +61,7 @@ def print_comparison(
     Parameters
     ----------
     rows : sequence of (label, key, format)
-        What to show.
+        Rows to show.
     columns : mapping of str to mapping
         Results by key, under their heading, two columns at least; a missing key leaves its cell
         empty.
@@ -99,18 +99,18 @@ def side_by_side(rows: Sequence[Row], columns: Mapping[str, Mapping[str, Cell]])
     Parameters
     ----------
     rows : sequence of (label, key, format)
-        What to show.
+        Rows to show.
     columns : mapping of str to mapping
         Results by key, under their heading; a missing key leaves its cell empty.
 
     Returns
     -------
     list of tuple of str
-        The head first.
+        Rows of text, the head first.
     """
     table: Rows = [("", *(heading.replace("\n", " ") for heading in columns))]
     for label, key, form in rows:
-        table.append((label, *(_format(of.get(key), form) for of in columns.values())))
+        table.append((label, *(_format(column.get(key), form) for column in columns.values())))
     return table
 
 
@@ -120,12 +120,12 @@ def markdown(rows: Rows) -> str:
     Parameters
     ----------
     rows : list of tuple of str
-        The head first, all of one length.
+        Rows of text, the head first, all of one length.
 
     Returns
     -------
     str
-        Lines that end in a line break.
+        Lines of the table, each with its line break.
     """
     head, *body = rows
     rule = ("---", *("---:" for _ in head[1:]))

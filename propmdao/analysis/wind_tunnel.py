@@ -13,11 +13,13 @@ import numpy.typing as npt
 from scipy.optimize import root_scalar
 
 from propmdao.analysis.single_point import analyze
+from propmdao.formats.text import read_text
 from propmdao.propeller.description import Propeller
 from propmdao.runtime.input_files import read_text
 
 FloatArray = npt.NDArray[np.float64]
 
+_COLUMNS = ("rpm", "J", "CT", "CP")
 _LOW_J = 0.5  # up to here a propeller climbs and cruises; beyond it the slow ones windmill
 _TWIST_TOLERANCE = 1.0e-3  # deg
 
@@ -47,9 +49,9 @@ class Points:
         """Efficiency J CT / CP."""
         return self.J * self.CT / self.CP
 
-    def __getitem__(self, chosen: Any) -> Points:
+    def __getitem__(self, index: Any) -> Points:
         """Some of the points, by a slice or a mask."""
-        return Points(self.rpm[chosen], self.J[chosen], self.CT[chosen], self.CP[chosen])
+        return Points(self.rpm[index], self.J[index], self.CT[index], self.CP[index])
 
 
 @dataclasses.dataclass(frozen=True)
@@ -59,9 +61,9 @@ class WindTunnel:
     Attributes
     ----------
     source : str
-        Who has measured.
+        Origin of the measurements: who, where, which file.
     static, dynamic : Points
-        Without and with flight speed.
+        Measured points without and with flight speed.
     """
 
     source: str
@@ -73,20 +75,20 @@ class WindTunnel:
 class Errors:
     """Differences between computed and measured coefficients, as fractions.
 
-    Those of static points are relative to each point; with flight speed, where CT crosses zero,
+    Errors of static points are relative to each point; with flight speed, where CT crosses zero,
     they are fractions of the mean static coefficient measured.
 
     Attributes
     ----------
     static_ct, static_cp : (n_static,) arrays
-        Of the static points.
+        Errors of CT and CP at the static points.
     low_ct, low_cp : arrays
-        Of the points with flight speed up to J 0.5.
+        Errors at the points with flight speed up to J 0.5.
     high_ct, high_cp : arrays
-        Of those beyond.
+        Errors at the points beyond J 0.5.
     trend : float
-        Slope of static CT over rotation speed, computed over measured: the Reynolds number's
-        effect (straight lines of least squares).
+        Slope of static CT over rotation speed, computed over measured: the effect of the Reynolds
+        number (straight lines of least squares).
     """
 
     static_ct: FloatArray
@@ -104,8 +106,8 @@ def read_wind_tunnel(path: str | os.PathLike[str]) -> WindTunnel:
     Parameters
     ----------
     path : path
-        TOML: ``source``, a table ``static`` of arrays rpm, CT, CP and tables ``run`` of one rpm and
-        arrays J, CT, CP.
+        TOML file: ``source``, a table ``static`` of arrays rpm, CT, CP and tables ``run`` of one
+        rpm and arrays J, CT, CP.
 
     Returns
     -------
@@ -122,11 +124,8 @@ def read_wind_tunnel(path: str | os.PathLike[str]) -> WindTunnel:
         data = tomllib.loads(text)
         static = _points({"J": np.zeros(len(data["static"]["rpm"])), **data["static"]})
         runs = [_points({**run, "rpm": [run["rpm"]] * len(run["J"])}) for run in data["run"]]
-        every = {
-            name: np.concatenate([getattr(run, name) for run in runs])
-            for name in ("rpm", "J", "CT", "CP")
-        }
-        return WindTunnel(data["source"], static, Points(**every))
+        dynamic = {name: np.concatenate([getattr(run, name) for run in runs]) for name in _COLUMNS}
+        return WindTunnel(data["source"], static, Points(**dynamic))
     except KeyError as error:
         raise MeasurementError(f"{path}: {error} is missing") from error
     except (TypeError, ValueError) as error:
@@ -134,7 +133,8 @@ def read_wind_tunnel(path: str | os.PathLike[str]) -> WindTunnel:
 
 
 def _points(table: dict[str, Any]) -> Points:
-    arrays = {name: np.array(table[name], float) for name in ("rpm", "J", "CT", "CP")}
+    """Read the arrays of a table, as many numbers in each."""
+    arrays = {name: np.array(table[name], float) for name in _COLUMNS}
     sizes = {name: values.size for name, values in arrays.items()}
     if len(set(sizes.values())) > 1:
         raise ValueError(f"rpm, J, CT and CP must have equally many numbers; they have {sizes}")
@@ -142,7 +142,7 @@ def _points(table: dict[str, Any]) -> Points:
 
 
 def computed(
-    propeller: Propeller, at: Points, twist_offset_deg: float = 0.0, **settings: Any
+    propeller: Propeller, points: Points, twist_offset_deg: float = 0.0, **settings: Any
 ) -> Points:
     """Analyse a propeller at measured rotation speeds and advance ratios.
 
@@ -150,52 +150,54 @@ def computed(
     ----------
     propeller : Propeller
         The described blade.
-    at : Points
-        Where; their coefficients are not looked at.
+    points : Points
+        Points to analyse; only their rotation speeds and advance ratios count.
     twist_offset_deg : float
-        Added to the blade angle all over the span [deg].
+        Angle added to the blade angle all over the span [deg].
     **settings
-        Of `propmdao.analyze`: density, viscous, stall_delay, polars, fidelity.
+        Further arguments of `propmdao.analyze`: density, viscous, stall_delay, polars, fidelity.
 
     Returns
     -------
     Points
-        With the computed coefficients, nan where the analysis has not converged.
+        The same points with the computed coefficients, nan where the analysis has not converged.
     """
-    found = np.full((at.rpm.size, 2), np.nan)
-    for row, rpm, j in zip(found, at.rpm, at.J, strict=True):
+    coefficients = np.full((points.rpm.size, 2), np.nan)
+    for row, rpm, j in zip(coefficients, points.rpm, points.J, strict=True):
         speed = j * rpm / 60.0 * propeller.diameter
         result = analyze(
             propeller, rpm=rpm, speed=speed, twist_offset_deg=twist_offset_deg, **settings
         )
         if result.steady.converged:
             row[:] = float(result.coefficients.CT), float(result.coefficients.CP)
-    return Points(at.rpm, at.J, *found.T)
+    return Points(points.rpm, points.J, *coefficients.T)
 
 
-def errors(measured: WindTunnel, static: Points, dynamic: Points) -> Errors:
+def errors(tunnel: WindTunnel, static: Points, dynamic: Points) -> Errors:
     """Compare computed with measured coefficients.
 
     Parameters
     ----------
-    measured : WindTunnel
+    tunnel : WindTunnel
         The measurements.
     static, dynamic : Points
-        Of `computed`, at the same points.
+        Computed coefficients at the same points, from `computed`.
 
     Returns
     -------
     Errors
-        Positive where more is computed than measured.
+        Errors, positive where more is computed than measured.
     """
-    still = measured.static
-    low = measured.dynamic.J <= _LOW_J
-    ct = (dynamic.CT - measured.dynamic.CT) / still.CT.mean()
-    cp = (dynamic.CP - measured.dynamic.CP) / still.CP.mean()
-    slope, measured_slope = (np.polyfit(still.rpm, of.CT, 1)[0] for of in (static, still))
+    measured = tunnel.static
+    low = tunnel.dynamic.J <= _LOW_J
+    ct = (dynamic.CT - tunnel.dynamic.CT) / measured.CT.mean()
+    cp = (dynamic.CP - tunnel.dynamic.CP) / measured.CP.mean()
+    slope, measured_slope = (
+        np.polyfit(measured.rpm, points.CT, 1)[0] for points in (static, measured)
+    )
     return Errors(
-        static_ct=static.CT / still.CT - 1.0,
-        static_cp=static.CP / still.CP - 1.0,
+        static_ct=static.CT / measured.CT - 1.0,
+        static_cp=static.CP / measured.CP - 1.0,
         low_ct=ct[low],
         low_cp=cp[low],
         high_ct=ct[~low],
@@ -217,14 +219,15 @@ def calibrated_twist_deg(
     propeller : Propeller
         The described blade.
     static : Points
-        Measured without flight speed; others are taken as well.
+        Measured points, as a rule those without flight speed.
     evaluate : callable
-        Of propeller, points and twist offset, as `computed`.
+        Function of propeller, points and twist offset that computes the coefficients, such as
+        `computed`.
 
     Returns
     -------
     float
-        Offset to the blade angle all over the span [deg].
+        Angle to add to the blade angle all over the span [deg].
 
     Raises
     ------
@@ -235,9 +238,11 @@ def calibrated_twist_deg(
     def missing(offset_deg: float) -> float:
         return float(np.mean(evaluate(propeller, static, offset_deg).CT / static.CT - 1.0))
 
-    found = root_scalar(missing, method="secant", x0=0.0, x1=1.0, xtol=_TWIST_TOLERANCE, maxiter=12)
-    if not found.converged or not np.isfinite(found.root):
+    solution = root_scalar(
+        missing, method="secant", x0=0.0, x1=1.0, xtol=_TWIST_TOLERANCE, maxiter=12
+    )
+    if not solution.converged or not np.isfinite(solution.root):
         raise MeasurementError(
             f"no twist offset brings the mean CT of '{propeller.name}' to the measured one"
         )
-    return float(found.root)
+    return float(solution.root)

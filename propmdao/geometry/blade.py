@@ -25,12 +25,12 @@ class Blade:
         Tip radius [m].
     chord_over_R, beta, sweep_over_R, rake_over_R : (n_stations,) arrays
         Chord, blade angle [rad], sweep of the quarter chord (positive aft, against rotation) and
-        rake (positive toward thrust).
+        rake (positive toward thrust); all but the blade angle over the tip radius.
     thickness_over_chord, camber_over_chord : (n_stations,) arrays
         Maximum thickness and maximum camber over chord.
     camber_shape, thickness_shape : (n_stations, n_chord) arrays
         Camber line and full thickness scaled to a maximum of 1, on
-        `airfoils.airfoil.CHORD_FRACTION`. Both are laid off perpendicular to the chord.
+        `propeller.airfoils.airfoil.CHORD_FRACTION`. Both are laid off perpendicular to the chord.
     """
 
     radius: jax.Array
@@ -68,14 +68,16 @@ class Blade:
             camber / np.where(flat, 1.0, max_camber)[:, None],
         )
         max_thickness = thickness.max(axis=1)
-        given = propeller.thickness_over_chord
+        described_thickness = propeller.thickness_over_chord
         return cls(
             radius=jnp.asarray(0.5 * propeller.diameter, dtype=float),
             chord_over_R=jnp.asarray(propeller.c_over_R),
             beta=jnp.asarray(np.radians(propeller.beta_deg)),
             sweep_over_R=jnp.asarray(propeller.sweep_over_R),
             rake_over_R=jnp.asarray(propeller.rake_over_R),
-            thickness_over_chord=jnp.asarray(max_thickness if given is None else given),
+            thickness_over_chord=jnp.asarray(
+                max_thickness if described_thickness is None else described_thickness
+            ),
             camber_over_chord=jnp.asarray(max_camber),
             camber_shape=jnp.asarray(shape),
             thickness_shape=jnp.asarray(thickness / max_thickness[:, None]),
@@ -98,9 +100,9 @@ class SpanInterpolation:
     r_over_R : (n,) array
         Radii reached.
     smooth : (n, n_stations) array
-        Not-a-knot cubic spline: chord, beta, sweep and rake.
+        Not-a-knot cubic spline, for chord, beta, sweep and rake.
     linear : (n, n_stations) array
-        Piecewise linear: thickness, camber and section shapes.
+        Piecewise linear interpolation, for thickness, camber and section shapes.
     """
 
     r_over_R: jax.Array
@@ -147,12 +149,12 @@ def span_interpolation(
 
 
 def design_lift_coefficient(camber_shape: npt.ArrayLike | jax.Array) -> jax.Array:
-    """Design lift coefficient of mean lines of unit camber, by thin-airfoil theory.
+    """Compute the design lift coefficient of mean lines of unit camber, by thin-airfoil theory.
 
     Parameters
     ----------
     camber_shape : (..., n_chord) array
-        Camber lines scaled to a maximum of 1, on `airfoils.airfoil.CHORD_FRACTION`.
+        Camber lines scaled to a maximum of 1, on `propeller.airfoils.airfoil.CHORD_FRACTION`.
 
     Returns
     -------

@@ -1,4 +1,4 @@
-"""The vortex lattice's corner points: the camber surface, cosine spaced both ways."""
+"""The vortex lattice on the camber surface: its radii along the span, its corner points."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ import jax.numpy as jnp
 import numpy as np
 import numpy.typing as npt
 
-from propmdao.geometry.blade import Blade, SpanInterpolation
+from propmdao.geometry.blade import Blade, SpanInterpolation, span_interpolation
 from propmdao.geometry.section import place_sections, section_shape
 from propmdao.propeller.airfoils.airfoil import chord_interpolation
 
@@ -18,7 +18,7 @@ def lattice_span(root_r_over_R: float, n_spanwise: int) -> npt.NDArray[np.float6
     Parameters
     ----------
     root_r_over_R : float
-        Where the blade begins.
+        Radius at which the blade begins, r/R.
     n_spanwise : int
         Number of panels over the span.
 
@@ -41,6 +41,86 @@ def lattice_span(root_r_over_R: float, n_spanwise: int) -> npt.NDArray[np.float6
     return root_r_over_R + (1.0 - root_r_over_R) * spacing
 
 
+def strip_middle(n_spanwise: int) -> npt.NDArray[np.float64]:
+    """Position of the collocation and force points in each strip, as a fraction root to tip.
+
+    They lie at the middle of the cosine angle, not of the strip: the points at which Glauert's
+    integral is exact for the trailing vortices of cosine-spaced strips (Lan, J. Aircraft 11, 1974).
+    The middle of the strip needs 48 strips where this needs 12.
+
+    Parameters
+    ----------
+    n_spanwise : int
+        Number of strips, cosine spaced toward root and tip.
+
+    Returns
+    -------
+    (n_spanwise,) array
+        Fractions between 0 and 1.
+    """
+    angle = np.linspace(0.0, np.pi, 2 * n_spanwise + 1)
+    x = 0.5 * (1.0 - np.cos(angle))
+    edge, middle = x[::2], x[1::2]
+    fractions: npt.NDArray[np.float64] = (middle - edge[:-1]) / np.diff(edge)
+    return fractions
+
+
+def strip_radii(root_r_over_R: float, n_spanwise: int) -> npt.NDArray[np.float64]:
+    """Radii of the collocation points of an unswept blade, where the section polars belong.
+
+    Parameters
+    ----------
+    root_r_over_R : float
+        Radius at which the blade begins, r/R.
+    n_spanwise : int
+        Number of strips.
+
+    Returns
+    -------
+    (n_spanwise,) array
+        r/R of the middle of each strip, as `strip_middle` defines it.
+    """
+    edge, f = lattice_span(root_r_over_R, n_spanwise), strip_middle(n_spanwise)
+    middle: npt.NDArray[np.float64] = (1.0 - f) * edge[:-1] + f * edge[1:]
+    return middle
+
+
+def lattice_interpolation(stations: npt.NDArray[np.float64], n_spanwise: int) -> SpanInterpolation:
+    """Build the interpolation from a blade's stations to the chordwise edges of its lattice.
+
+    Parameters
+    ----------
+    stations : (n_stations,) array
+        r/R of the blade's stations; the first is the root.
+    n_spanwise : int
+        Number of panels over the span.
+
+    Returns
+    -------
+    SpanInterpolation
+        Interpolation to the n_spanwise + 1 radii of `lattice_span`.
+    """
+    return span_interpolation(stations, lattice_span(stations[0], n_spanwise))
+
+
+def strip_interpolation(stations: npt.NDArray[np.float64], n_spanwise: int) -> SpanInterpolation:
+    """Build the interpolation from a blade's stations to the strips of its lattice.
+
+    Parameters
+    ----------
+    stations : (n_stations,) array
+        r/R of the blade's stations; the first is the root.
+    n_spanwise : int
+        Number of strips.
+
+    Returns
+    -------
+    SpanInterpolation
+        Interpolation to the n_spanwise radii of `strip_radii`.
+    """
+    return span_interpolation(stations, strip_radii(stations[0], n_spanwise))
+
+
 def lattice_chord_fraction(n_chordwise: int) -> npt.NDArray[np.float64]:
     """Chord fractions of the lattice's spanwise edges, cosine spaced toward both edges.
 
@@ -52,7 +132,7 @@ def lattice_chord_fraction(n_chordwise: int) -> npt.NDArray[np.float64]:
     Returns
     -------
     (n_chordwise + 1,) array
-        From the leading edge, 0, to the trailing edge, 1.
+        Fractions that rise from 0 at the leading edge to 1 at the trailing edge.
     """
     return 0.5 * (1.0 - np.cos(np.linspace(0.0, np.pi, n_chordwise + 1)))
 

@@ -2,88 +2,108 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 from jax import Array
 
-from propmdao.geometry.blade import Blade, SpanInterpolation, span_interpolation
-from propmdao.geometry.lattice import lattice_nodes, lattice_span
-from propmdao.geometry.surface import surface_nodes, surface_span
+from propmdao.geometry.blade import Blade, SpanInterpolation
+from propmdao.geometry.lattice import lattice_interpolation, lattice_nodes, strip_interpolation
+from propmdao.geometry.surface import surface_interpolation, surface_nodes, surface_panels
+from propmdao.propeller.description import Propeller
+from propmdao.records.panels import Panels
 from propmdao.records.pytrees import record
-
-if TYPE_CHECKING:
-    from propmdao.propeller.description import Propeller
 
 
 @record
 class MeshRadii:
-    """Where along the span the meshes of a blade have their nodes.
+    """Interpolation from a blade's stations to all radii of its meshes.
 
     Attributes
     ----------
-    lattice, surface : SpanInterpolation
-        From the blade's stations to the radii of either mesh.
+    lattice : SpanInterpolation
+        Interpolation to the chordwise edges of the vortex lattice.
+    strips : SpanInterpolation
+        Interpolation to the middle of the lattice's strips, where the section polars belong.
+    surface : SpanInterpolation
+        Interpolation to the contours of the surface.
     """
 
     lattice: SpanInterpolation
+    strips: SpanInterpolation
     surface: SpanInterpolation
 
 
 def mesh_radii(
     stations: npt.NDArray[np.float64], n_spanwise: int, n_surface_span: int
 ) -> MeshRadii:
-    """Radii of both meshes.
+    """Build the interpolation to the radii of both meshes; call it outside ``jit``.
 
     Parameters
     ----------
     stations : (n_stations,) array
         r/R of the blade's stations.
     n_spanwise, n_surface_span : int
-        Panels of the lattice and of the surface along the span.
+        Panels of the lattice and contours of the surface along the span.
 
     Returns
     -------
     MeshRadii
         Interpolation from the stations.
     """
-    root = float(stations[0])
     return MeshRadii(
-        span_interpolation(stations, lattice_span(root, n_spanwise)),
-        span_interpolation(stations, surface_span(root, n_surface_span)),
+        lattice=lattice_interpolation(stations, n_spanwise),
+        strips=strip_interpolation(stations, n_spanwise),
+        surface=surface_interpolation(stations, n_surface_span),
     )
 
 
-def blade_meshes(
-    blade: Blade, radii: MeshRadii, n_chordwise: int, n_contour: int
-) -> tuple[Array, Array]:
-    """Nodes of both meshes.
+class BladeMeshes(NamedTuple):
+    """Nodes of both meshes of blade 1, at azimuth 0.
+
+    Attributes
+    ----------
+    lattice : (n_chordwise + 1, n_spanwise + 1, 3) array
+        Corner points of the lattice, leading edge and root first [m].
+    surface : (n_contour, n_surface_span, 3) array
+        Points of the section contours [m].
+    """
+
+    lattice: Array
+    surface: Array
+
+    @property
+    def panels(self) -> Panels:
+        """Panels of the closed surface."""
+        return surface_panels(self.surface)
+
+
+def blade_meshes(blade: Blade, radii: MeshRadii, n_chordwise: int, n_contour: int) -> BladeMeshes:
+    """Lay out both meshes of a blade.
 
     Parameters
     ----------
     blade : Blade
         The blade.
     radii : MeshRadii
-        Where the nodes are along the span.
+        Interpolation to the radii of the meshes.
     n_chordwise, n_contour : int
-        Lattice panels over the chord, surface points around the section.
+        Lattice panels over the chord, surface points around the section; static under ``jit``.
 
     Returns
     -------
-    lattice : (n_chordwise + 1, n_spanwise + 1, 3) array
-        Corner points of the lattice, leading edge and root first [m].
-    surface : (n_contour, n_surface_span, 3) array
-        Points of the section contours [m].
+    BladeMeshes
+        Nodes of lattice and surface.
     """
-    return (
-        lattice_nodes(blade, radii.lattice, n_chordwise),
-        surface_nodes(blade, radii.surface, n_contour),
+    return BladeMeshes(
+        lattice=lattice_nodes(blade, radii.lattice, n_chordwise),
+        surface=surface_nodes(blade, radii.surface, n_contour),
     )
 
 
 def propeller_surface(propeller: Propeller, n_contour: int, n_surface_span: int) -> Array:
-    """Nodes of the surface of a described propeller.
+    """Lay out the surface of a described propeller.
 
     Parameters
     ----------
@@ -97,6 +117,5 @@ def propeller_surface(propeller: Propeller, n_contour: int, n_surface_span: int)
     (n_contour, n_surface_span, 3) array
         Points of the section contours of blade 1 [m].
     """
-    stations = propeller.r_over_R
-    span = span_interpolation(stations, surface_span(stations[0], n_surface_span))
+    span = surface_interpolation(propeller.r_over_R, n_surface_span)
     return surface_nodes(Blade.from_propeller(propeller), span, n_contour)

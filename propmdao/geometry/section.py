@@ -1,4 +1,4 @@
-"""Where the points of a section lie in space: chord coordinates to the blade frame."""
+"""Positions of a section's points in space: chord coordinates to the blade frame."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ def place_sections(
     blade : Blade
         The blade.
     span : SpanInterpolation
-        The n_span radii wanted.
+        Interpolation to the n_span radii wanted.
     chordwise : (n_points,) array
         Chord fraction of each point, 0 leading edge to 1 trailing edge.
     normal : (n_points, n_span) array
@@ -46,16 +46,16 @@ def place_sections(
 def section_shape(
     blade: Blade, span: SpanInterpolation, chord_operator: jax.Array
 ) -> tuple[jax.Array, jax.Array]:
-    """Camber and full thickness over chord at given chord fractions of each radius.
+    """Interpolate camber and full thickness over chord to chord fractions of each radius.
 
     Parameters
     ----------
     blade : Blade
         The blade.
     span : SpanInterpolation
-        The n_span radii wanted.
+        Interpolation to the n_span radii wanted.
     chord_operator : (n_points, n_chord) array
-        From the shared chord grid to the chord fractions wanted.
+        Interpolation from the shared chord grid to the chord fractions wanted.
 
     Returns
     -------

@@ -7,7 +7,7 @@ import jax.numpy as jnp
 import numpy as np
 import numpy.typing as npt
 
-from propmdao.geometry.blade import Blade, SpanInterpolation
+from propmdao.geometry.blade import Blade, SpanInterpolation, span_interpolation
 from propmdao.geometry.lattice import lattice_span
 from propmdao.geometry.section import place_sections, section_shape
 from propmdao.propeller.airfoils.airfoil import chord_interpolation
@@ -20,7 +20,7 @@ def surface_span(root_r_over_R: float, n_span: int) -> npt.NDArray[np.float64]:
     Parameters
     ----------
     root_r_over_R : float
-        Where the blade begins.
+        Radius at which the blade begins, r/R.
     n_span : int
         Number of contours (OpenVSP's Tess_U), at least 2.
 
@@ -37,6 +37,24 @@ def surface_span(root_r_over_R: float, n_span: int) -> npt.NDArray[np.float64]:
     if n_span < 2:
         raise ValueError(f"n_span must be at least 2; got {n_span}")
     return lattice_span(root_r_over_R, n_span - 1)
+
+
+def surface_interpolation(stations: npt.NDArray[np.float64], n_span: int) -> SpanInterpolation:
+    """Build the interpolation from a blade's stations to the contours of its surface.
+
+    Parameters
+    ----------
+    stations : (n_stations,) array
+        r/R of the blade's stations; the first is the root.
+    n_span : int
+        Number of contours, at least 2.
+
+    Returns
+    -------
+    SpanInterpolation
+        Interpolation to the n_span radii of `surface_span`.
+    """
+    return span_interpolation(stations, surface_span(stations[0], n_span))
 
 
 def surface_nodes(blade: Blade, span: SpanInterpolation, n_contour: int = 65) -> jax.Array:
@@ -78,7 +96,7 @@ def surface_quads(nodes: jax.Array) -> tuple[jax.Array, jax.Array, jax.Array, ja
     Parameters
     ----------
     nodes : (n_contour, n_span, 3) array
-        Points of `surface_nodes`.
+        Points of the section contours, as `surface_nodes` makes them [m].
 
     Returns
     -------
@@ -101,17 +119,17 @@ def surface_quads(nodes: jax.Array) -> tuple[jax.Array, jax.Array, jax.Array, ja
 
 
 def surface_panels(nodes: jax.Array) -> Panels:
-    """Panels of the watertight surface.
+    """Compute the panels of the watertight surface.
 
     Parameters
     ----------
     nodes : (n_contour, n_span, 3) array
-        Points of `surface_nodes`.
+        Points of the section contours, as `surface_nodes` makes them [m].
 
     Returns
     -------
     Panels
-        In the order of `surface_quads`.
+        Centres and area vectors, in the order of `surface_quads`.
     """
     a, b, c, d = surface_quads(nodes)
     return Panels(center=0.25 * (a + b + c + d), vector_area=0.5 * jnp.cross(c - a, d - b))

@@ -10,22 +10,22 @@ from propmdao.propeller.airfoils.airfoil import CHORD_FRACTION
 
 
 def trailing_edge(blade: Blade, span: SpanInterpolation) -> tuple[jax.Array, jax.Array]:
-    """Thickness and angle of the trailing edge.
+    """Compute thickness and angle of the trailing edge.
 
     Parameters
     ----------
     blade : Blade
         The blade.
     span : SpanInterpolation
-        The n radii wanted.
+        Interpolation to the n radii wanted.
 
     Returns
     -------
     thickness_over_chord : (n,) array
-        Of the blunt edge, 0 where the sections are sharp.
+        Thickness of the blunt edge over chord, 0 where the sections are sharp.
     angle : (n,) array
-        Between upper and lower surface [rad].
+        Angle between upper and lower surface at the edge [rad].
     """
     maximum = span.linear @ blade.thickness_over_chord
-    before, at = ((span.linear @ blade.thickness_shape[:, k]) * maximum for k in (-2, -1))
-    return at, jnp.arctan((before - at) / (1.0 - CHORD_FRACTION[-2]))
+    before, edge = ((span.linear @ blade.thickness_shape[:, k]) * maximum for k in (-2, -1))
+    return edge, jnp.arctan((before - edge) / (1.0 - CHORD_FRACTION[-2]))

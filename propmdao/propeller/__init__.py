@@ -1,1 +1,1 @@
-"""What a user describes: a propeller, its checks, its airfoils, the catalogue."""
+"""Propellers as users describe them: their checks, their airfoils, the catalogue."""

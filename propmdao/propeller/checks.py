@@ -24,9 +24,9 @@ def number(key: str, value: Any) -> float:
     Parameters
     ----------
     key : str
-        What the message calls it.
+        Name of the value in messages.
     value : object
-        What was given.
+        Value as the user has it.
 
     Returns
     -------
@@ -36,7 +36,7 @@ def number(key: str, value: Any) -> float:
     Raises
     ------
     PropellerError
-        If it is text, a truth value, not finite or no number at all.
+        If the value is text, a truth value, not finite or no number at all.
     """
     try:
         result = float(value)
@@ -53,21 +53,21 @@ def distribution(key: str, values: Any, r: FloatArray | None = None) -> FloatArr
     Parameters
     ----------
     key : str
-        What the message calls it.
+        Name of the distribution in messages.
     values : array_like
-        What was given.
+        Values as the user has them.
     r : (n_stations,) array, optional
-        Stations that it must have one value for.
+        Stations that need one value each.
 
     Returns
     -------
     (n_stations,) array
-        A copy.
+        A read-only copy.
 
     Raises
     ------
     PropellerError
-        If it is no list of numbers, has another length or a value that is not finite.
+        If the values are no list of numbers, are not one per station or not all finite.
     """
     try:
         array = np.array(values)
@@ -86,7 +86,7 @@ def distribution(key: str, values: Any, r: FloatArray | None = None) -> FloatArr
 
 def require(
     key: str,
-    what: str,
+    rule: str,
     holds: npt.NDArray[np.bool_],
     values: FloatArray,
     r: FloatArray | None = None,
@@ -95,12 +95,12 @@ def require(
 
     Parameters
     ----------
-    key, what : str
-        The message begins ``key must what``.
+    key, rule : str
+        Name of the distribution and what it must do; the message begins ``key must rule``.
     holds : (n_stations,) array of bool
-        Where the condition holds.
+        True at the stations that keep the rule.
     values : (n_stations,) array
-        The values it is about.
+        Values of the distribution.
     r : (n_stations,) array, optional
         Stations, named in the message.
 
@@ -112,7 +112,7 @@ def require(
     if not holds.all():
         i = int(np.argmin(holds))
         where = "" if r is None else f" (r/R {r[i]:.10g})"
-        raise PropellerError(f"{key} must {what}; station {i + 1}{where} has {values[i]:.10g}")
+        raise PropellerError(f"{key} must {rule}; station {i + 1}{where} has {values[i]:.10g}")
 
 
 def stations(values: Any) -> FloatArray:
@@ -121,7 +121,7 @@ def stations(values: Any) -> FloatArray:
     Parameters
     ----------
     values : array_like
-        What was given.
+        Stations as the user has them.
 
     Returns
     -------
@@ -131,8 +131,9 @@ def stations(values: Any) -> FloatArray:
     Raises
     ------
     PropellerError
-        If there are fewer than two, they do not rise, or do not end at 1: the diameter says where
-        the tip is, a blade that ends before it contradicts itself, and nothing is extrapolated.
+        If there are fewer than two stations, or they do not rise or do not end at 1: the diameter
+        says where the tip is, a blade that ends before it contradicts itself, and nothing is
+        extrapolated.
     """
     r = distribution("r_over_R", values)
     if r.size < 2:
@@ -150,7 +151,7 @@ def airfoil_pairs(pairs: Iterable[Any]) -> tuple[tuple[float, str], ...]:
     Parameters
     ----------
     pairs : iterable of (float, str)
-        What was given.
+        Pairs as the user has them.
 
     Returns
     -------
@@ -160,8 +161,8 @@ def airfoil_pairs(pairs: Iterable[Any]) -> tuple[tuple[float, str], ...]:
     Raises
     ------
     PropellerError
-        If there is none, one is no such pair, r/R does not rise within 0..1 or an airfoil cannot
-        be found or read.
+        If there are no pairs, something is no such pair, r/R does not rise within 0..1 or an
+        airfoil cannot be found or read.
     """
     checked: list[tuple[float, str]] = []
     for pair in pairs:

@@ -1,4 +1,4 @@
-"""Propeller: what a user describes, checked, read from and written to TOML."""
+"""The propeller as a user describes it, checked."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from collections.abc import Sequence
 import numpy as np
 import numpy.typing as npt
 
-from propmdao.propeller import checks as checks
+from propmdao.propeller import checks
 from propmdao.propeller.airfoils.library import find_airfoil
 from propmdao.propeller.checks import PropellerError
 
@@ -28,14 +28,14 @@ DISTRIBUTIONS = (
 
 @dataclasses.dataclass(frozen=True, eq=False)
 class Propeller:
-    """A propeller as it is described: stations, sections, blades.
+    """Description of a propeller: its stations, sections and blades.
 
     A changed propeller is ``dataclasses.replace(propeller, beta_deg=propeller.beta_deg + 1)``.
 
     Attributes
     ----------
     name : str
-        What it is called.
+        Name of the propeller.
     diameter : float
         Tip to tip [m].
     n_blades : int
@@ -48,13 +48,13 @@ class Propeller:
         r/R and airfoil (catalogue name, "naca4412" or a .dat path), rising in r/R; blended
         linearly between, held constant beyond.
     thickness_over_chord : (n_stations,) array, optional
-        Maximum thickness over chord; by default that of the airfoils.
+        Maximum thickness over chord; the airfoils' own by default.
     sweep_over_R : (n_stations,) array or number, optional
         Quarter chord aft (against rotation) of the radial line, 0 by default.
     rake_over_R : (n_stations,) array or number, optional
         Quarter chord toward thrust of the rotor plane, 0 by default.
     source : str
-        Where the numbers come from.
+        Origin of the numbers.
 
     Raises
     ------

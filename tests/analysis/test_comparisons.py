@@ -50,9 +50,9 @@ def test_file_is_not_rounded_and_has_headings_of_one_line(table):
 
 def test_every_row_has_a_number_at_an_observer(apcsf_at_two_observers):
     values = at_observer(apcsf_at_two_observers, 1)
-    heard = apcsf_at_two_observers.to_dict()["observers"][1]
+    levels = apcsf_at_two_observers.to_dict()["observers"][1]
     assert {key for _, key, _ in ROWS} <= values.keys()
-    assert values["oaspl_db"] == heard["oaspl_db"]
+    assert values["oaspl_db"] == levels["oaspl_db"]
     assert values["bpf_hz"] == pytest.approx(140.0)  # two blades at 4200 rpm
 
 

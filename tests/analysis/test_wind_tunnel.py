@@ -96,44 +96,44 @@ def test_errors_are_relative_in_hover_and_of_the_static_coefficient_in_flight(fi
     tunnel = read_wind_tunnel(file)
     more = points(tunnel.static.rpm, [0, 0], [0.11, 0.12], [0.03, 0.05])
     fast = points(tunnel.dynamic.rpm, tunnel.dynamic.J, [0.08, 0.061, -0.01], [0.04, 0.03, 0.0155])
-    found = errors(tunnel, more, fast)
-    assert_allclose(found.static_ct, [0.1, 0.0], atol=1e-12)
-    assert_allclose(found.static_cp, [-0.25, 0.0], atol=1e-12)
-    assert_allclose(found.low_ct, [0.0, 0.1], atol=1e-12)
-    assert_allclose(found.low_cp, [0.0, 0.0], atol=1e-12)
-    assert_allclose(found.high_ct, [-0.02 / 0.11])
-    assert_allclose(found.high_cp, [-0.0045 / 0.045])
-    assert found.trend == pytest.approx(0.5)  # 0.01 over 2000 rpm, 0.02 measured
+    error = errors(tunnel, more, fast)
+    assert_allclose(error.static_ct, [0.1, 0.0], atol=1e-12)
+    assert_allclose(error.static_cp, [-0.25, 0.0], atol=1e-12)
+    assert_allclose(error.low_ct, [0.0, 0.1], atol=1e-12)
+    assert_allclose(error.low_cp, [0.0, 0.0], atol=1e-12)
+    assert_allclose(error.high_ct, [-0.02 / 0.11])
+    assert_allclose(error.high_cp, [-0.0045 / 0.045])
+    assert error.trend == pytest.approx(0.5)  # 0.01 over 2000 rpm, 0.02 measured
 
 
 def test_computed_is_the_analysis_of_every_point():
     propeller = load_propeller("apcsf_11x4.7")
-    at = points([3000, 4000], [0.0, 0.4], [np.nan] * 2, [np.nan] * 2)
-    found = computed(propeller, at, 1.0, fidelity=COARSE)
+    asked = points([3000, 4000], [0.0, 0.4], [np.nan] * 2, [np.nan] * 2)
+    result = computed(propeller, asked, 1.0, fidelity=COARSE)
     for i, speed in enumerate((0.0, 0.4 * 4000 / 60 * 0.2794)):
-        one = analyze(
-            propeller, rpm=at.rpm[i], speed=speed, twist_offset_deg=1.0, fidelity=COARSE
+        alone = analyze(
+            propeller, rpm=asked.rpm[i], speed=speed, twist_offset_deg=1.0, fidelity=COARSE
         ).coefficients
-        assert_allclose((found.CT[i], found.CP[i]), (one.CT, one.CP), rtol=1e-12)
-        assert_allclose(found.J[i], one.J, atol=1e-12)
+        assert_allclose((result.CT[i], result.CP[i]), (alone.CT, alone.CP), rtol=1e-12)
+        assert_allclose(result.J[i], alone.J, atol=1e-12)
 
 
 def test_point_without_convergence_is_nan(monkeypatch):
     def never(*args, **settings):
-        found = analyze(*args, **settings)
-        steady = dataclasses.replace(found.steady, converged=np.asarray(False))
-        return dataclasses.replace(found, steady=steady)
+        result = analyze(*args, **settings)
+        steady = dataclasses.replace(result.steady, converged=np.asarray(False))
+        return dataclasses.replace(result, steady=steady)
 
     monkeypatch.setattr("propmdao.analysis.wind_tunnel.analyze", never)
-    at = points([3000], [0.0], [0.1], [0.04])
-    found = computed(load_propeller("apcsf_11x4.7"), at, fidelity=COARSE)
-    assert np.isnan([found.CT, found.CP]).all()
+    asked = points([3000], [0.0], [0.1], [0.04])
+    result = computed(load_propeller("apcsf_11x4.7"), asked, fidelity=COARSE)
+    assert np.isnan([result.CT, result.CP]).all()
 
 
-def thrust_grows_with_twist(propeller, at, twist_deg):
+def thrust_grows_with_twist(propeller, points, twist_deg):
     """A propeller with CT 0.1 and 0.01 more for every degree, and a bend in it."""
     ct = 0.1 + 0.01 * twist_deg + 1e-4 * twist_deg**2
-    return dataclasses.replace(at, CT=np.full_like(at.rpm, ct))
+    return dataclasses.replace(points, CT=np.full_like(points.rpm, ct))
 
 
 def test_calibration_brings_the_mean_relative_error_to_zero():
@@ -147,8 +147,8 @@ def test_calibration_brings_the_mean_relative_error_to_zero():
 def test_calibration_that_cannot_be_is_refused():
     static = points([2000], [0], [0.11], [0.04])
 
-    def stuck(propeller, at, twist_deg):
-        return dataclasses.replace(at, CT=np.full_like(at.rpm, 0.1))
+    def stuck(propeller, points, twist_deg):
+        return dataclasses.replace(points, CT=np.full_like(points.rpm, 0.1))
 
     with pytest.raises(MeasurementError, match="no twist offset .* 'apcsf_11x4.7'"):
         calibrated_twist_deg(load_propeller("apcsf_11x4.7"), static, stuck)

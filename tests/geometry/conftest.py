@@ -1,4 +1,4 @@
-"""What the geometry tests share: propellers, and derivatives checked against differences."""
+"""Propellers of the geometry tests, and derivatives checked against differences."""
 
 from __future__ import annotations
 

@@ -9,12 +9,19 @@ import jax
 import numpy as np
 import pytest
 
-from propmdao.geometry.blade import Blade, span_interpolation
-from propmdao.geometry.lattice import lattice_chord_fraction, lattice_nodes, lattice_span
+from propmdao.geometry.blade import Blade
+from propmdao.geometry.lattice import (
+    lattice_chord_fraction,
+    lattice_interpolation,
+    lattice_nodes,
+    lattice_span,
+    strip_interpolation,
+    strip_radii,
+)
 from propmdao.propeller.description import Propeller
 
 R_OVER_R = np.array([0.2, 0.4, 0.6, 0.8, 1.0])
-SPAN = span_interpolation(R_OVER_R, lattice_span(0.2, 12))
+SPAN = lattice_interpolation(R_OVER_R, 12)
 
 
 def nodes(blade: Blade, n_chordwise: int = 8) -> np.ndarray:
@@ -34,6 +41,17 @@ def test_radii_run_from_root_to_tip_and_close_up_at_both() -> None:
     assert (steps > 0.0).all()
     assert steps.argmax() in (5, 6)
     np.testing.assert_allclose(steps, steps[::-1], rtol=1e-12)
+
+
+def test_strips_lie_at_the_middle_of_the_cosine_angle() -> None:
+    radii, edges = strip_radii(0.2, 12), lattice_span(0.2, 12)
+    assert ((radii > edges[:-1]) & (radii < edges[1:])).all()
+    np.testing.assert_allclose(radii, lattice_span(0.2, 24)[1::2], rtol=1e-14)
+
+
+def test_interpolations_reach_the_edges_and_the_strips() -> None:
+    np.testing.assert_array_equal(SPAN.r_over_R, lattice_span(0.2, 12))
+    np.testing.assert_array_equal(strip_interpolation(R_OVER_R, 12).r_over_R, strip_radii(0.2, 12))
 
 
 @pytest.mark.parametrize(

@@ -10,7 +10,12 @@ import numpy as np
 import pytest
 
 from propmdao.geometry.blade import Blade, span_interpolation
-from propmdao.geometry.surface import surface_nodes, surface_panels, surface_span
+from propmdao.geometry.surface import (
+    surface_interpolation,
+    surface_nodes,
+    surface_panels,
+    surface_span,
+)
 from propmdao.propeller.airfoils.airfoil import naca4_from_name
 from propmdao.propeller.description import Propeller
 from propmdao.records.panels import Panels
@@ -20,7 +25,7 @@ R_OVER_R = np.array([0.2, 0.4, 0.6, 0.8, 1.0])
 
 def skin(propeller: Propeller, n_contour: int = 65, n_span: int = 80) -> Panels:
     blade = Blade.from_propeller(propeller)
-    span = span_interpolation(propeller.r_over_R, surface_span(0.2, n_span))
+    span = surface_interpolation(propeller.r_over_R, n_span)
     return surface_panels(surface_nodes(blade, span, n_contour))
 
 
@@ -57,7 +62,7 @@ def test_contour_runs_from_the_trailing_edge_over_the_upper_side(
     straight: Callable[..., Propeller],
 ) -> None:
     propeller = straight("naca2412")
-    span = span_interpolation(R_OVER_R, surface_span(0.2, 5))
+    span = surface_interpolation(R_OVER_R, 5)
     nodes = np.asarray(surface_nodes(Blade.from_propeller(propeller), span, 65))
     assert nodes.shape == (65, 5, 3)
     section = nodes[:, 2, 1:]
@@ -71,7 +76,7 @@ def test_nodes_on_the_shared_grid_are_the_section_itself(
     straight: Callable[..., Propeller],
 ) -> None:
     section = naca4_from_name("naca4412")
-    span = span_interpolation(R_OVER_R, surface_span(0.2, 5))
+    span = surface_interpolation(R_OVER_R, 5)
     nodes = np.asarray(surface_nodes(Blade.from_propeller(straight("naca4412")), span, 161))
     upper, lower = nodes[80::-1, 0, 2], nodes[80:, 0, 2]
     np.testing.assert_allclose(upper, 0.2 * (section.camber + section.thickness / 2), atol=1e-16)
@@ -160,7 +165,7 @@ def test_sharp_trailing_edge_has_panels_without_area_and_finite_derivatives(
     straight: Callable[..., Propeller],
 ) -> None:
     blade = Blade.from_propeller(straight("e63"))
-    span = span_interpolation(R_OVER_R, surface_span(0.2, 4))
+    span = surface_interpolation(R_OVER_R, 4)
 
     def total(b: Blade) -> jax.Array:
         return (surface_panels(surface_nodes(b, span, 9)).vector_area ** 2).sum()
@@ -173,14 +178,14 @@ def test_sharp_trailing_edge_has_panels_without_area_and_finite_derivatives(
 def test_derivatives_agree_with_differences(
     twisted: Propeller, assert_derivatives: Callable[..., None]
 ) -> None:
-    span = span_interpolation(R_OVER_R, surface_span(0.2, 5))
+    span = surface_interpolation(R_OVER_R, 5)
     blade = Blade.from_propeller(twisted)
     assert_derivatives(lambda b: surface_nodes(b, span, 9), blade)
     assert_derivatives(lambda b: surface_panels(surface_nodes(b, span, 9)).vector_area, blade)
 
 
 def test_surface_passes_through_jit(twisted: Propeller) -> None:
-    span = span_interpolation(R_OVER_R, surface_span(0.2, 5))
+    span = surface_interpolation(R_OVER_R, 5)
     blade = Blade.from_propeller(twisted)
     compiled = jax.jit(lambda b: surface_panels(surface_nodes(b, span, 9)).center)(blade)
     plain = surface_panels(surface_nodes(blade, span, 9)).center

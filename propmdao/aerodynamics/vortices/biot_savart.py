@@ -73,18 +73,18 @@ def _kernel_derivative(
 
     # |P - A|^2 / 2 = (1, -A).(P.P / 2, P) + A.A / 2, so that the sums over points and over segments
     # in the transpose are matrix products, not slow reductions.
-    one, p1, dp1 = jnp.ones_like(p[:1]), _with(p, 1.0), _with(dp, (p * dp).sum(0))
+    ones, p1, dp1 = jnp.ones_like(p[:1]), _with_row(p, 1.0), _with_row(dp, (p * dp).sum(0))
 
     def change(x: Array, dx: Array) -> Array:
-        return 2.0 * (_with(-x, 1.0).T @ dp1 + _with(-dx, (x * dx).sum(0)).T @ p1)
+        return 2.0 * (_with_row(-x, 1.0).T @ dp1 + _with_row(-dx, (x * dx).sum(0)).T @ p1)
 
     length = ((b - a) * (db - da)).sum(0)[:, None]
     dk = by_aa * change(a, da) + by_bb * change(b, db)
-    dk += by_core4 * (dcore4[:, None] @ one) - by_d * (length @ one)
+    dk += by_core4 * (dcore4[:, None] @ ones) - by_d * (length @ ones)
     return k, dk
 
 
-def _with(x: Array, row: Array | float) -> Array:
+def _with_row(x: Array, row: Array | float) -> Array:
     """Coordinates (3, n) and a fourth row."""
     return jnp.concatenate([x, jnp.broadcast_to(row, x[:1].shape)])
 
@@ -115,15 +115,15 @@ def _velocity(p: Array, m: Array) -> Array:
 
 
 def segment_velocities(points: Array, start: Array, end: Array, core_radius: Scalar) -> Array:
-    """Velocity of each segment of unit circulation at each point.
+    """Compute the velocity of each segment of unit circulation at each point.
 
     Parameters
     ----------
     points : (n_points, 3) array
-        Where the velocity is wanted [m].
+        Points at which the velocity is wanted [m].
     start, end : (n_chains, n_segments, 3) array
-        Ends of the segments, whose velocities are added over the chains, as the same segment of
-        all blades; circulation is positive from start to end [m].
+        Ends of the segments [m]. Velocities are added over the chains, for example over
+        the blades, of which each has the same segment; circulation is positive from start to end.
     core_radius : float
         Vortex core radius, positive [m].
 
@@ -144,15 +144,15 @@ def segment_velocities(points: Array, start: Array, end: Array, core_radius: Sca
 
 
 def filament_velocities(points: Array, nodes: Array, core_radius: Array) -> Array:
-    """Velocity of each filament (a chain of segments of unit circulation) at each point.
+    """Compute the velocity of each filament, a chain of unit circulation, at each point.
 
     Parameters
     ----------
     points : (n_points, 3) array
-        Where the velocity is wanted [m].
+        Points at which the velocity is wanted [m].
     nodes : (n_filaments, n_chains, n_nodes, 3) array
-        Chains of nodes whose velocities are added, as the same filament of all blades; circulation
-        is positive along the chain [m].
+        Nodes of the chains [m]. Velocities are added over the chains, for example over the
+        blades, of which each has the same filament; circulation is positive along the chain.
     core_radius : (n_nodes - 1,) array
         Core radius of the segments along a chain, positive [m].
 
@@ -167,8 +167,8 @@ def filament_velocities(points: Array, nodes: Array, core_radius: Array) -> Arra
     # One filament at a time: the block of segments x points stays in cache, and the sum over
     # segments is a matrix product. The checkpoint keeps reverse mode from storing every block.
     @jax.checkpoint
-    def one(chains: Array) -> Array:
+    def filament(chains: Array) -> Array:
         a, b = chains[:, :-1].reshape(-1, 3).T, chains[:, 1:].reshape(-1, 3).T
         return _moments(a, b) @ _kernel(p, a, b, _core4(a, b, core))
 
-    return _velocity(p, jnp.moveaxis(jax.lax.map(one, nodes), 1, 0))
+    return _velocity(p, jnp.moveaxis(jax.lax.map(filament, nodes), 1, 0))

@@ -30,7 +30,7 @@ class AirfoilError(ValueError):
 
 
 def chord_interpolation(angle: npt.ArrayLike) -> FloatArray:
-    """Operator from values on the shared grid to values at other chord angles.
+    """Build the operator from values on the shared grid to values at other chord angles.
 
     Parameters
     ----------
@@ -54,13 +54,13 @@ class Airfoil:
     Attributes
     ----------
     name : str
-        What it is called.
+        Name of the section.
     camber : (81,) array
         Camber line over chord at `CHORD_FRACTION`, 0 at the leading edge.
     thickness : (81,) array
         Full thickness over chord at `CHORD_FRACTION`, not negative.
     source : str
-        Where the shape comes from.
+        Origin of the shape.
     """
 
     name: str

@@ -38,16 +38,16 @@ def find_airfoil(name: str) -> Airfoil:
     Raises
     ------
     AirfoilError
-        If there is none; the message lists names that come near.
+        If there is no such airfoil; the message lists names that come near.
     """
-    known = airfoil_names()
-    if name in known:
+    names = airfoil_names()
+    if name in names:
         return _from_catalogue(name)
     if name.endswith(".dat"):
         return read_coordinates(Path(name))
     if name.startswith("naca"):
         return naca4_from_name(name)
-    near = difflib.get_close_matches(name.lower(), known) or known
+    near = difflib.get_close_matches(name.lower(), names) or names
     raise AirfoilError(
         f"unknown airfoil '{name}'; near: {', '.join(near)}; also 'naca4412' or a path to a .dat"
     )

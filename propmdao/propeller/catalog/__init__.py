@@ -9,34 +9,34 @@ _FOLDER = files(__name__)
 
 
 def catalog_names() -> list[str]:
-    """Names of the propellers of the catalogue, sorted.
+    """List the propellers of the catalogue by name, sorted.
 
     Returns
     -------
     list of str
-        What `propmdao.propeller.description.load_propeller` knows by name.
+        Names that `propmdao.formats.propellers.load_propeller` takes.
     """
     return _names("propellers")
 
 
 def airfoil_names() -> list[str]:
-    """Names of the airfoils of the catalogue, sorted; NACA 4-digit sections need no file.
+    """List the airfoils of the catalogue by name, sorted; NACA 4-digit sections need no file.
 
     Returns
     -------
     list of str
-        What a propeller file may name as an airfoil beside "naca4412" and .dat paths.
+        Names that a propeller file may give an airfoil, beside "naca4412" and .dat paths.
     """
     return _names("airfoils")
 
 
 def propeller_file(name: str) -> Traversable:
-    """TOML file of a propeller of the catalogue.
+    """Get the TOML file of a propeller of the catalogue.
 
     Parameters
     ----------
     name : str
-        One of `catalog_names`.
+        Name of the propeller, one of `catalog_names`.
 
     Returns
     -------
@@ -47,12 +47,12 @@ def propeller_file(name: str) -> Traversable:
 
 
 def airfoil_file(name: str) -> Traversable:
-    """TOML file of an airfoil of the catalogue.
+    """Get the TOML file of an airfoil of the catalogue.
 
     Parameters
     ----------
     name : str
-        One of `airfoil_names`.
+        Name of the airfoil, one of `airfoil_names`.
 
     Returns
     -------

@@ -35,9 +35,10 @@ class SectionPolars:
     thickness : (n_thickness,) array
         Maximum thickness over chord, rising.
     log_re, alpha : (n_re,), (n_alpha,) arrays
-        As in `PolarTable`.
+        Natural logarithms of the Reynolds numbers and angles of attack [rad], both as `PolarTable`
+        has them.
     values : (n_shapes, n_camber, n_thickness, 3, n_re, n_alpha) array
-        cl, ln(cd), cm.
+        Coefficients cl, ln(cd), cm.
     weights : (n_stations, n_shapes) array
         Share of each shape in each station of the propeller; rows sum to 1.
     """
@@ -54,7 +55,7 @@ class SectionPolars:
 def section_tables(
     polars: SectionPolars, weights: jax.Array, camber: jax.Array, thickness: jax.Array
 ) -> PolarTable:
-    """Polars of sections of given shape, camber and thickness.
+    """Interpolate the polars of sections of any shape, camber and thickness.
 
     Parameters
     ----------
@@ -68,7 +69,7 @@ def section_tables(
     Returns
     -------
     PolarTable
-        One row per section, C1 in camber and thickness.
+        Polars with a row per section, C1 in camber and thickness.
     """
     by_camber = dense(*clamped_stencil(polars.camber, camber), polars.camber.size)
     by_thickness = dense(*clamped_stencil(polars.thickness, thickness), polars.thickness.size)
@@ -80,21 +81,21 @@ def section_tables(
 
 
 def blade_tables(polars: SectionPolars, blade: Blade, span: SpanInterpolation) -> PolarTable:
-    """Polars of a blade at the radii of a span interpolation.
+    """Interpolate the polars of a blade's sections to the radii of a span interpolation.
 
     Parameters
     ----------
     polars : SectionPolars
         Polars of the propeller's sections.
     blade : Blade
-        Its blade, modified or not.
+        The propeller's blade, modified or not.
     span : SpanInterpolation
-        From the blade's stations to n radii.
+        Interpolation from the blade's stations to n radii.
 
     Returns
     -------
     PolarTable
-        One row per radius.
+        Polars with a row per radius.
     """
     return section_tables(
         polars,
@@ -105,21 +106,21 @@ def blade_tables(polars: SectionPolars, blade: Blade, span: SpanInterpolation) -
 
 
 def warn_outside_sections(polars: SectionPolars, blade: Blade, r_over_R: npt.ArrayLike) -> None:
-    """Warn once each if camber or thickness lies outside the polars; call it outside ``jit``.
+    """Warn, once each, if camber or thickness lies outside the polars; call it outside ``jit``.
 
     Parameters
     ----------
     polars : SectionPolars
         Polars of the propeller's sections.
     blade : Blade
-        Its blade.
+        The propeller's blade.
     r_over_R : (n_stations,) array
-        Its stations.
+        r/R of the blade's stations.
 
     Warns
     -----
     PolarRangeWarning
-        One line, naming the station furthest outside.
+        If a station lies outside; the message names the station furthest outside.
     """
     radii = np.asarray(r_over_R, dtype=float)
     for name in ("camber", "thickness"):
@@ -143,14 +144,16 @@ def shape_values(coefficients: FloatArray, low: IntArray, high: IntArray) -> Flo
     Parameters
     ----------
     coefficients : (n_camber, n_thickness, 3, n_re, n_attached) array
-        cl, cd, cm near attached flow for cambers from 0 up.
+        Coefficients cl, cd, cm near attached flow for cambers from 0 up.
     low, high : (n_camber, n_thickness, n_re) arrays of int
-        Where they hold, as `propmdao.aerodynamics.sections.polars.high_angle.all_angles` takes it.
+        Positions of the angles between which the coefficients hold, as
+        `propmdao.aerodynamics.sections.polars.high_angle.all_angles` takes them.
 
     Returns
     -------
     (2 n_camber - 1, n_thickness, 3, n_re, n_alpha) array
-        cl, ln(cd), cm; a section upside down is the same section seen from below.
+        Coefficients cl, ln(cd), cm at all angles; a section upside down is the same section seen
+        from below.
     """
     cl, cd, cm = np.moveaxis(coefficients, 2, 0)
     rows = (-1, cl.shape[-1])

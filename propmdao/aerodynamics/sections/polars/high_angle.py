@@ -15,7 +15,7 @@ _FAR_DEG = np.concatenate(
 )
 #: All angles of a table, -180 to 180 deg [rad].
 ALPHA: FloatArray = np.radians(np.concatenate([-_FAR_DEG[::-1], ATTACHED_DEG, _FAR_DEG]))
-#: Where `ATTACHED_DEG` stands in `ALPHA`.
+#: Positions of `ATTACHED_DEG` in `ALPHA`.
 ATTACHED = slice(_FAR_DEG.size, _FAR_DEG.size + ATTACHED_DEG.size)
 for _grid in (ATTACHED_DEG, ALPHA):
     _grid.setflags(write=False)
@@ -34,22 +34,22 @@ _MOMENT_FADE = np.radians(20.0)
 def viterna(
     alpha: FloatArray, stall: FloatArray, cl: FloatArray, cd: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
-    """Lift and drag from stall to 180 deg.
+    """Compute lift and drag from stall to 180 deg.
 
     Parameters
     ----------
     alpha : (n_alpha,) array
-        Angles, 0 < alpha <= pi [rad].
+        Angles of attack, 0 < alpha <= pi [rad].
     stall : (n, 1) array
-        Angles at which to start, above 0 [rad].
+        Angles of stall, from which the formula starts, above 0 [rad].
     cl, cd : (n, 1) arrays
-        Coefficients there.
+        Coefficients at stall.
 
     Returns
     -------
     cl, cd : (n, n_alpha) arrays
-        Equal to the given ones at `stall`. Past 90 deg lift is `BACKWARD_LIFT` of its mirror
-        image and goes to zero along a sine within `stall` of 180 deg.
+        Coefficients, equal to those at stall there. Past 90 deg lift is `BACKWARD_LIFT` of its
+        mirror image and goes to zero along a sine within `stall` of 180 deg.
 
     Notes
     -----
@@ -70,19 +70,19 @@ def viterna(
 
 
 def flat_plate_moment(alpha: FloatArray, cl: FloatArray, cd: FloatArray) -> FloatArray:
-    """Moment about the quarter chord of a stalled section.
+    """Compute the moment about the quarter chord of a stalled section.
 
     Parameters
     ----------
     alpha : array
-        Angles, 0..pi [rad].
+        Angles of attack, 0..pi [rad].
     cl, cd : arrays
-        Coefficients there.
+        Coefficients at these angles.
 
     Returns
     -------
     array
-        Normal force times the distance of its centre at 0.5 - 0.175 (1 - 2 alpha/pi) chords.
+        Moment coefficient, nose up: the normal force acts at 0.5 - 0.175 (1 - 2 alpha/pi) chords.
 
     Notes
     -----
@@ -107,23 +107,23 @@ def all_angles(
     Returns
     -------
     (n, 3, n_alpha) array
-        cl, ln(cd), cm at `ALPHA`: as given between the stalls, fading over `FADE_DEG` degrees into
-        the continuation from the values at the stall.
+        Coefficients cl, ln(cd), cm at `ALPHA`: unchanged between the stalls, fading over
+        `FADE_DEG` degrees into the continuation from the values at the stall.
     """
     upper = _continued(cl, cd, cm, high)
     flipped = _continued(-cl[:, ::-1], cd[:, ::-1], -cm[:, ::-1], ATTACHED_DEG.size - 1 - low)
     lower = flipped[:, :, ::-1] * np.array([-1.0, 1.0, -1.0])[:, None]
-    both: FloatArray = np.where(ALPHA >= 0.0, upper, lower)
-    # One angle, two names: the section has one drag and moment there, and no lift.
-    both[:, :, [0, -1]] = 0.5 * (both[:, :, :1] + both[:, :, -1:])
-    return both
+    values: FloatArray = np.where(ALPHA >= 0.0, upper, lower)
+    # -180 and 180 deg are the same angle: the section has one drag and moment there, and no lift.
+    values[:, :, [0, -1]] = 0.5 * (values[:, :, :1] + values[:, :, -1:])
+    return values
 
 
 def _continued(cl: FloatArray, cd: FloatArray, cm: FloatArray, high: IntArray) -> FloatArray:
-    """cl, ln(cd), cm at `ALPHA`, right for alpha >= 0, continued past the position `high`."""
+    """Continue cl, ln(cd), cm past the position `high` to all of `ALPHA`; right for alpha >= 0."""
     row = np.arange(high.size)
     stall = np.radians(ATTACHED_DEG[high])[:, None]
-    stalled = [given[row, high][:, None] for given in (cl, cd, cm)]
+    stalled = [coefficient[row, high][:, None] for coefficient in (cl, cd, cm)]
     alpha = np.maximum(ALPHA, 1e-3)
     lift, drag = viterna(alpha, stall, stalled[0], stalled[1])
     at_stall = flat_plate_moment(stall, stalled[0], stalled[1])
@@ -131,11 +131,11 @@ def _continued(cl: FloatArray, cd: FloatArray, cm: FloatArray, high: IntArray) -
     moment = flat_plate_moment(alpha, lift, drag) + decay * (stalled[2] - at_stall)
     step = np.clip((np.degrees(ALPHA) - np.degrees(stall)) / FADE_DEG, 0.0, 1.0)
     weight = 1.0 - step**2 * (3.0 - 2.0 * step)
-    given = np.zeros((high.size, 3, ALPHA.size))
-    given[:, :, ATTACHED] = np.stack([cl, np.log(cd), cm], axis=1)
+    attached = np.zeros((high.size, 3, ALPHA.size))
+    attached[:, :, ATTACHED] = np.stack([cl, np.log(cd), cm], axis=1)
     far = np.stack([lift, np.log(drag), moment], axis=1)
     weight = weight[:, None, :]
-    return weight * given + (1.0 - weight) * far
+    return weight * attached + (1.0 - weight) * far
 
 
 def trusted_range(cl: FloatArray, confidence: FloatArray) -> tuple[IntArray, IntArray]:
@@ -149,10 +149,10 @@ def trusted_range(cl: FloatArray, confidence: FloatArray) -> tuple[IntArray, Int
     Returns
     -------
     low, high : (n,) arrays of int
-        Positions in `ATTACHED_DEG`: from the largest lift within 4..20 deg outward the first angle
-        whose confidence is below 0.5, at most 20 deg; and likewise on the negative side. Between
-        the stalls confidence is not asked: it tells where XFOIL converges, and low-Reynolds
-        polars agree with XFOIL there although it is low.
+        Positions in `ATTACHED_DEG` of the last angles that hold: from the largest lift within
+        4..20 deg outward, the first angle whose confidence is below 0.5, at most 20 deg; and
+        likewise on the negative side. Between the stalls the confidence does not count: it tells
+        where XFOIL converges, and low-Reynolds polars agree with XFOIL there although it is low.
     """
     inner, outer = (int(np.flatnonzero(ATTACHED_DEG == angle)[0]) for angle in (4.0, 20.0))
 

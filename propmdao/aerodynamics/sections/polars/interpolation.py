@@ -10,7 +10,7 @@ MARGIN = 0.25
 
 
 def _hermite_weights(nodes: jax.Array, x: jax.Array) -> jax.Array:
-    """Weights of four node values for x between the middle two; slopes from three-point parabolas.
+    """Weigh four node values for x between the middle two; slopes from three-point parabolas.
 
     The slope at a node depends on that node and its two neighbours alone, so both cells that meet
     there share it: the Catmull-Rom spline on uneven nodes.
@@ -33,7 +33,7 @@ def _hermite_weights(nodes: jax.Array, x: jax.Array) -> jax.Array:
 
 
 def _cell(nodes: jax.Array, x: jax.Array) -> jax.Array:
-    """Cell that holds x; the first or last one outside."""
+    """Find the cell that holds x; outside the nodes it is the first or the last."""
     # Tables are short: comparing with every node compiles and runs faster than a search.
     above = jnp.searchsorted(nodes, x, side="right", method="compare_all")
     return jnp.clip(above - 1, 0, nodes.size - 2)
@@ -52,7 +52,8 @@ def soft_clamp(nodes: jax.Array, x: jax.Array) -> jax.Array:
     Returns
     -------
     array
-        `x` itself inside; outside it levels off within `MARGIN` of an end cell, C1.
+        Arguments, `x` itself inside the range; outside they level off within `MARGIN` of an end
+        cell, C1.
     """
     low, high = nodes[0], nodes[-1]
     below, above = MARGIN * (nodes[1] - low), MARGIN * (high - nodes[-2])
@@ -63,7 +64,7 @@ def soft_clamp(nodes: jax.Array, x: jax.Array) -> jax.Array:
 
 
 def clamped_stencil(nodes: jax.Array, x: jax.Array) -> tuple[jax.Array, jax.Array]:
-    """Nodes and weights for arguments held to the range of the nodes by `soft_clamp`.
+    """Find nodes and weights for arguments held to the range of the nodes by `soft_clamp`.
 
     Parameters
     ----------
@@ -75,7 +76,8 @@ def clamped_stencil(nodes: jax.Array, x: jax.Array) -> tuple[jax.Array, jax.Arra
     Returns
     -------
     index, weight : (n, 4) arrays
-        Values at `x` are the sum of weight * values[index]; C1 in `x`.
+        Positions and weights of four nodes: values at `x` are the sum of weight * values[index],
+        C1 in `x`.
     """
     x = soft_clamp(nodes, x)
     cell, last = _cell(nodes, x), nodes.size - 1
@@ -88,7 +90,7 @@ def clamped_stencil(nodes: jax.Array, x: jax.Array) -> tuple[jax.Array, jax.Arra
 
 
 def periodic_stencil(nodes: jax.Array, angle: jax.Array) -> tuple[jax.Array, jax.Array]:
-    """Nodes and weights for angles of any size.
+    """Find nodes and weights for angles of any size.
 
     Parameters
     ----------
@@ -100,7 +102,8 @@ def periodic_stencil(nodes: jax.Array, angle: jax.Array) -> tuple[jax.Array, jax
     Returns
     -------
     index, weight : (n, 4) arrays
-        Values at `angle` are the sum of weight * values[index]; C1 and periodic.
+        Positions and weights of four nodes: values at `angle` are the sum of
+        weight * values[index], C1 and periodic.
     """
     turn = 2.0 * jnp.pi
     x = angle - turn * jnp.round(angle / turn)
@@ -116,7 +119,7 @@ def dense(index: jax.Array, weight: jax.Array, n_nodes: int) -> jax.Array:
     Parameters
     ----------
     index, weight : (n, 4) arrays
-        A stencil.
+        Stencil, positions and weights of four nodes.
     n_nodes : int
         Number of nodes.
 

@@ -12,7 +12,7 @@ ATTACHED, SEPARATED = jnp.radians(12.0), jnp.radians(30.0)
 
 
 def prandtl_glauert(mach: jax.Array | float, alpha: jax.Array) -> jax.Array:
-    """Factor by which compressibility raises section lift and moment.
+    """Compute the factor by which compressibility raises section lift and moment.
 
     Parameters
     ----------
@@ -24,8 +24,8 @@ def prandtl_glauert(mach: jax.Array | float, alpha: jax.Array) -> jax.Array:
     Returns
     -------
     (n,) array
-        1 / sqrt(1 - M^2) where the flow is attached, fading to 1 between 12 and 30 deg: the rule
-        is one of small disturbances and says nothing about separated flow.
+        Factor 1 / sqrt(1 - M^2) where the flow is attached, fading to 1 between 12 and 30 deg: the
+        rule is for small disturbances and says nothing about separated flow.
 
     Notes
     -----

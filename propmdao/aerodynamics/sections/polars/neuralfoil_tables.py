@@ -11,10 +11,6 @@ import numpy as np
 from propmdao.aerodynamics.sections.polars.high_angle import ATTACHED_DEG, FloatArray
 from propmdao.propeller.airfoils.airfoil import CHORD_FRACTION
 
-#: Critical amplification of e^n transition, the same for every blade: moulded edges, and air that
-#: other blades have stirred. A clean wind tunnel has 9 to 12, a dirty one 4 to 8 (Drela, XFOIL user
-#: guide); studies/aerodynamic_sensitivity.py shows what it changes.
-N_CRIT = 5.0
 #: Largest of NeuralFoil's networks.
 MODEL_SIZE = "xxxlarge"
 #: Reynolds numbers of the tables, four per decade.
@@ -33,8 +29,13 @@ def neuralfoil_installed() -> bool:
     return importlib.util.find_spec("neuralfoil") is not None
 
 
-def neuralfoil_settings() -> str:
+def neuralfoil_settings(n_crit: float) -> str:
     """Describe how polars are made, for the record inside a table file.
+
+    Parameters
+    ----------
+    n_crit : float
+        Critical amplification exponent of transition.
 
     Returns
     -------
@@ -42,15 +43,19 @@ def neuralfoil_settings() -> str:
         One line with version and settings.
     """
     return (
-        f"NeuralFoil {version('neuralfoil')}, model {MODEL_SIZE}, n_crit {N_CRIT:g}, free "
+        f"NeuralFoil {version('neuralfoil')}, model {MODEL_SIZE}, n_crit {n_crit:g}, free "
         "transition, incompressible"
     )
 
 
 def neuralfoil_polar(
-    camber: FloatArray, thickness: FloatArray, alpha_deg: FloatArray, re: FloatArray
+    camber: FloatArray,
+    thickness: FloatArray,
+    alpha_deg: FloatArray,
+    re: FloatArray,
+    n_crit: float,
 ) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
-    """Coefficients of one section over angles and Reynolds numbers.
+    """Compute the coefficients of a section over angles and Reynolds numbers.
 
     Parameters
     ----------
@@ -61,11 +66,13 @@ def neuralfoil_polar(
         Angles from the chord line [deg].
     re : (n_re,) array
         Reynolds numbers.
+    n_crit : float
+        Critical amplification exponent of transition.
 
     Returns
     -------
     cl, cd, cm, confidence : (n_re, n_alpha) arrays
-        Coefficients, the moment about the quarter chord; NeuralFoil's confidence, 0..1.
+        Coefficients, the moment about the quarter chord, and NeuralFoil's confidence, 0..1.
 
     Notes
     -----
@@ -85,7 +92,7 @@ def neuralfoil_polar(
         shape.kulfan_parameters,
         alpha=angles.ravel(),
         Re=numbers.ravel(),
-        n_crit=N_CRIT,
+        n_crit=n_crit,
         model_size=MODEL_SIZE,
     )
     cl, cd, cm, confidence = (
@@ -100,26 +107,29 @@ def neuralfoil_grid(
     thickness_shape: FloatArray,
     max_camber: FloatArray,
     max_thickness: FloatArray,
+    n_crit: float,
 ) -> tuple[FloatArray, FloatArray]:
-    """Polars of a section shape over maximum camber and maximum thickness.
+    """Compute the polars of a section shape over maximum camber and maximum thickness.
 
     Parameters
     ----------
     camber_shape, thickness_shape : (n_chord,) arrays
         Shape with camber and thickness scaled to a maximum of 1.
     max_camber, max_thickness : (n_camber,), (n_thickness,) arrays
-        Over chord.
+        Maximum camber and thickness over chord of the sections wanted.
+    n_crit : float
+        Critical amplification exponent of transition.
 
     Returns
     -------
     coefficients : (n_camber, n_thickness, 3, n_re, n_alpha) array
-        cl, cd, cm at `REYNOLDS` and `high_angle.ATTACHED_DEG`.
+        Coefficients cl, cd, cm at `REYNOLDS` and `high_angle.ATTACHED_DEG`.
     confidence : (n_camber, n_thickness, n_re, n_alpha) array
-        NeuralFoil's confidence.
+        NeuralFoil's confidence, 0..1.
     """
     polars = np.stack(
         [
-            np.stack(neuralfoil_polar(camber, thickness, ATTACHED_DEG, REYNOLDS))
+            np.stack(neuralfoil_polar(camber, thickness, ATTACHED_DEG, REYNOLDS, n_crit))
             for camber in max_camber[:, None] * camber_shape
             for thickness in max_thickness[:, None] * thickness_shape
         ]

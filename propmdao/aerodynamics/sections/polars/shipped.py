@@ -1,4 +1,4 @@
-"""The tables that ship: which shapes they hold, how they are packed in their file."""
+"""The tables that ship: the shapes they hold, how they are packed in their file."""
 
 from __future__ import annotations
 
@@ -28,6 +28,10 @@ THICKNESS: FloatArray = np.array([0.03, 0.045, 0.065, 0.09, 0.12, 0.155, 0.19, 0
 CLARKY_SHARES = {"e63": 0.0, "e63-clarky": 0.5, "clarky": 1.0}
 #: Shapes of the file: the NACA 4-digit series with its maximum camber at 0.4 c, and the blends.
 SHAPES = ("naca4", *CLARKY_SHARES)
+#: Critical amplification of e^n transition in the tables, the same for every blade: moulded edges,
+#: and air that other blades have stirred. A clean wind tunnel has 9 to 12, a dirty one 4 to 8
+#: (Drela, XFOIL user guide); studies/aerodynamic_sensitivity.py shows what it changes.
+SHIPPED_N_CRIT = 5.0
 
 #: Units of the whole numbers in the file: of cl, ln(cd), cm.
 _UNIT = np.array([2e-4, 2e-4, 2e-5])[:, None, None]
@@ -40,7 +44,7 @@ class ShippedTables:
     Attributes
     ----------
     values : dict of (n_camber, n_thickness, 3, n_re, n_alpha) arrays
-        By shape; cambers are `CAMBER` and its mirror image.
+        Coefficients cl, ln(cd), cm by shape; the cambers are `CAMBER` and its mirror image.
     settings : str
         Program, version and settings, one line.
     """
@@ -50,17 +54,17 @@ class ShippedTables:
 
 
 def shape(name: str) -> tuple[FloatArray, FloatArray]:
-    """Camber line and thickness of a shape, each scaled to a maximum of 1.
+    """Get camber line and thickness of a shape, each scaled to a maximum of 1.
 
     Parameters
     ----------
     name : str
-        One of `SHAPES`.
+        Name of the shape, one of `SHAPES`.
 
     Returns
     -------
     camber, thickness : (n_chord,) arrays
-        On `propmdao.propeller.airfoils.airfoil.CHORD_FRACTION`.
+        Camber line and full thickness on `propmdao.propeller.airfoils.airfoil.CHORD_FRACTION`.
     """
     if name == "naca4":
         section = naca4(1.0, 0.4, 1.0)
@@ -79,11 +83,11 @@ def generate(path: Path) -> None:
     Parameters
     ----------
     path : Path
-        Where to write.
+        File to write.
     """
     packed, lows, highs = [], [], []
     for name in SHAPES:
-        coefficients, confidence = neuralfoil_grid(*shape(name), CAMBER, THICKNESS)
+        coefficients, confidence = neuralfoil_grid(*shape(name), CAMBER, THICKNESS, SHIPPED_N_CRIT)
         low, high = limits(coefficients, confidence)
         coefficients[:, :, 1] = np.log(coefficients[:, :, 1])
         # Second differences over angle are small whole numbers, which pack to a third.
@@ -99,17 +103,19 @@ def generate(path: Path) -> None:
         camber=CAMBER,
         thickness=THICKNESS,
         reynolds=REYNOLDS,
-        settings=np.array(neuralfoil_settings()),
+        settings=np.array(neuralfoil_settings(SHIPPED_N_CRIT)),
     )
 
 
 def limits(coefficients: FloatArray, confidence: FloatArray) -> tuple[IntArray, IntArray]:
-    """Find where each polar of a grid holds, by `trusted_range`.
+    """Find between which angles each polar of a grid holds, by `trusted_range`.
 
     Parameters
     ----------
-    coefficients, confidence : (n_camber, n_thickness, 3, n_re, n_attached) and without the 3
-        As `neuralfoil_grid` returns them.
+    coefficients : (n_camber, n_thickness, 3, n_re, n_attached) array
+        Coefficients as `neuralfoil_grid` returns them.
+    confidence : (n_camber, n_thickness, n_re, n_attached) array
+        NeuralFoil's confidence.
 
     Returns
     -------
@@ -122,7 +128,7 @@ def limits(coefficients: FloatArray, confidence: FloatArray) -> tuple[IntArray, 
 
 
 def unpack(packed: npt.NDArray[np.int16]) -> FloatArray:
-    """Coefficients from the whole numbers of the file.
+    """Turn the whole numbers of the file into coefficients.
 
     Parameters
     ----------
@@ -132,7 +138,7 @@ def unpack(packed: npt.NDArray[np.int16]) -> FloatArray:
     Returns
     -------
     array of the same shape
-        cl, cd, cm.
+        Coefficients cl, cd, cm.
     """
     whole = np.cumsum(np.cumsum(packed.astype(np.int64), axis=-1), axis=-1)
     coefficients: FloatArray = whole * _UNIT
@@ -146,7 +152,7 @@ def read_tables(file: str | Path | IO[bytes]) -> ShippedTables:
     Parameters
     ----------
     file : path or binary file
-        What `generate` wrote.
+        File that `generate` has written.
 
     Returns
     -------

@@ -69,7 +69,7 @@ class SectionCurves:
     Attributes
     ----------
     alpha : (n_alpha,) array
-        As in `PolarTable`.
+        Angles of attack, as `PolarTable` has them [rad].
     values : (n_sections, 3, n_alpha) array
         Lift coefficient, natural logarithm of the drag coefficient, moment coefficient.
     mach : (n_sections,) array or number
@@ -84,7 +84,7 @@ class SectionCurves:
 def section_curves(
     table: PolarTable, re: jax.Array, mach: jax.Array | float = 0.0
 ) -> SectionCurves:
-    """Polars at the Reynolds and Mach number of each section.
+    """Interpolate polars to the Reynolds and Mach number of each section.
 
     Parameters
     ----------
@@ -99,7 +99,7 @@ def section_curves(
     Returns
     -------
     SectionCurves
-        For `curve_coefficients`, which is cheap at any number of angles.
+        Polars over the angle of attack alone, cheap to evaluate with `curve_coefficients`.
     """
     index, weight = clamped_stencil(table.log_re, jnp.log(re))
     row = jnp.arange(table.values.shape[0])[:, None]
@@ -110,7 +110,7 @@ def section_curves(
 def curve_coefficients(
     curves: SectionCurves, alpha: jax.Array
 ) -> tuple[jax.Array, jax.Array, jax.Array]:
-    """Lift, drag and moment of each section at its own angle.
+    """Interpolate lift, drag and moment of each section to its own angle.
 
     Parameters
     ----------
@@ -136,7 +136,7 @@ def curve_coefficients(
 def section_coefficients(
     table: PolarTable, alpha: jax.Array, re: jax.Array, mach: jax.Array | float = 0.0
 ) -> tuple[jax.Array, jax.Array, jax.Array]:
-    """Lift, drag and moment of each section at its own angle, Reynolds and Mach number.
+    """Interpolate lift, drag and moment to each section's own angle, Reynolds and Mach number.
 
     Parameters
     ----------
@@ -144,9 +144,10 @@ def section_coefficients(
         Polars of n sections.
     alpha : (n,) array
         Angle of attack of each section, any angle [rad].
-    re, mach : (n,) array, (n,) array or number
-        As `section_curves` takes them; the Mach number raises lift and moment by
-        `prandtl_glauert` and leaves drag.
+    re : (n,) array
+        Reynolds number of each section on its chord; held at the ends of the table.
+    mach : (n,) array or number
+        Mach number of each section; it raises lift and moment by `prandtl_glauert` and leaves drag.
 
     Returns
     -------
@@ -176,7 +177,8 @@ def warn_outside(
     Warns
     -----
     PolarRangeWarning
-        One line for Reynolds and one for Mach numbers, naming the section furthest outside.
+        If Reynolds or Mach numbers lie outside, a warning for either; the message names the section
+        furthest outside.
     """
     re, radii = np.asarray(re, dtype=float), np.asarray(r_over_R, dtype=float)
     low, high = np.exp(np.asarray(table.log_re)[[0, -1]])

@@ -21,7 +21,7 @@ from propmdao.aerodynamics.sections.polars.table import PolarError, PolarTable
 LARGEST_STEP_DEG = 5.0
 #: So far from no angle of attack that rule holds: C81 tables are coarse beyond [deg].
 CLOSE_DEG = 12.0
-#: A polar that reaches this far both ways is taken as given at all angles [deg].
+#: A polar that reaches this far both ways is taken unchanged at all angles [deg].
 FULL_CIRCLE_DEG = 170.0
 #: Angles that every polar must reach [deg].
 NEEDED_DEG = (-1.0, 4.0)
@@ -36,7 +36,7 @@ class Polar:
     Attributes
     ----------
     name : str
-        The section.
+        Name of the section.
     re : float
         Reynolds number.
     mach : float
@@ -46,13 +46,13 @@ class Polar:
     cl, cd, cm : (n,) arrays
         Coefficients; cm about the quarter chord, nose up.
     n_crit : float, optional
-        Critical amplification, where the file tells.
+        Critical amplification exponent of transition, where the file tells it.
 
     Raises
     ------
     PolarError
-        If values are missing, not finite or out of range; angles come twice, leave gaps of
-        more than 5 deg within 12 deg of 0 or do not span -1..4 deg; or units look wrong.
+        If values are missing, not finite or out of range; if angles come twice, leave gaps of
+        more than 5 deg within 12 deg of 0 or do not span -1..4 deg; or if units look wrong.
     """
 
     name: str
@@ -118,8 +118,8 @@ def table_from_polars(polars: Sequence[Polar]) -> PolarTable:
     Returns
     -------
     PolarTable
-        One section. A polar that goes round is taken at all angles; any other is continued by
-        `propmdao.aerodynamics.sections.polars.high_angle` past its last angle, at most 20 deg.
+        Table of one section. A polar that goes round is taken at all angles; any other is continued
+        past its last angle, at most 20 deg, by `propmdao.aerodynamics.sections.polars.high_angle`.
 
     Raises
     ------
@@ -129,10 +129,10 @@ def table_from_polars(polars: Sequence[Polar]) -> PolarTable:
     if not polars:
         raise PolarError("a table needs at least one polar")
     ordered = sorted(polars, key=lambda polar: polar.re)
-    for one, other in zip(ordered, ordered[1:], strict=False):
-        if other.re < 1.01 * one.re:
+    for lower, upper in zip(ordered, ordered[1:], strict=False):
+        if upper.re < 1.01 * lower.re:
             raise PolarError(
-                f"Reynolds numbers of '{one.name}' and '{other.name}' are equal: {one.re:g}"
+                f"Reynolds numbers of '{lower.name}' and '{upper.name}' are equal: {lower.re:g}"
             )
     rows = np.stack([_at_all_angles(polar) for polar in ordered], axis=1)
     log_re = np.log([polar.re for polar in ordered])
@@ -143,18 +143,17 @@ def table_from_polars(polars: Sequence[Polar]) -> PolarTable:
 
 
 def _at_all_angles(polar: Polar) -> FloatArray:
-    """cl, ln(cd), cm at `ALPHA`, (3, n_alpha)."""
+    """Sample a polar at `ALPHA`: cl, ln(cd), cm, (3, n_alpha)."""
     degrees = np.degrees(polar.alpha)
-    given = np.stack([polar.cl, np.log(polar.cd), polar.cm])
+    coefficients = np.stack([polar.cl, np.log(polar.cd), polar.cm])
     if degrees[0] <= -FULL_CIRCLE_DEG and degrees[-1] >= FULL_CIRCLE_DEG:
         turn = np.concatenate([degrees - 360.0, degrees, degrees + 360.0])
-        angle, kept = np.unique(np.round(turn, 6), return_index=True)
-        around: FloatArray = PchipInterpolator(angle, np.tile(given, 3)[:, kept], axis=1)(
-            np.degrees(ALPHA)
-        )
+        angle, first = np.unique(np.round(turn, 6), return_index=True)
+        periodic = PchipInterpolator(angle, np.tile(coefficients, 3)[:, first], axis=1)
+        around: FloatArray = periodic(np.degrees(ALPHA))
         around[:, [0, -1]] = around[:, [-1, -1]]
         return around
     inside = np.clip(ATTACHED_DEG, degrees[0], degrees[-1])
-    cl, log_cd, cm = PchipInterpolator(degrees, given, axis=1)(inside)[:, None]
+    cl, log_cd, cm = PchipInterpolator(degrees, coefficients, axis=1)(inside)[:, None]
     holds = np.flatnonzero((inside == ATTACHED_DEG) & (np.abs(ATTACHED_DEG) <= _LIMIT_DEG))
     return all_angles(cl, np.exp(log_cd), cm, holds[:1], holds[-1:])[0]

@@ -1,4 +1,4 @@
-"""What the polar tests share."""
+"""Propellers and section tables that the polar tests share."""
 
 from __future__ import annotations
 
@@ -37,12 +37,11 @@ def _polars(airfoil: str) -> SectionPolars:
 
 def _section(airfoil: str, n: int = 1, **changed: float) -> PolarTable:
     section, polars = find_airfoil(airfoil), _polars(airfoil)
-    one = jnp.ones(1)
     table = section_tables(
         polars,
         polars.weights[:1],
-        one * changed.get("camber", section.max_camber),
-        one * section.max_thickness,
+        jnp.array([changed.get("camber", section.max_camber)]),
+        jnp.array([section.max_thickness]),
     )
     return dataclasses.replace(table, values=jnp.repeat(table.values, n, axis=0))
 

@@ -5,14 +5,12 @@ from __future__ import annotations
 import dataclasses
 import warnings
 from collections.abc import Callable
-from pathlib import Path
 
 import jax
 import jax.numpy as jnp
 import numpy as np
 import pytest
 
-from propmdao.aerodynamics.sections.polars import propeller_polars as finding
 from propmdao.aerodynamics.sections.polars.family import (
     blade_tables,
     section_tables,
@@ -20,18 +18,16 @@ from propmdao.aerodynamics.sections.polars.family import (
 )
 from propmdao.aerodynamics.sections.polars.neuralfoil_tables import REYNOLDS, neuralfoil_polar
 from propmdao.aerodynamics.sections.polars.propeller_polars import polars_for
-from propmdao.aerodynamics.sections.polars.shipped import shape, shipped_tables
+from propmdao.aerodynamics.sections.polars.shipped import SHIPPED_N_CRIT, shape, shipped_tables
 from propmdao.aerodynamics.sections.polars.table import (
-    PolarError,
     PolarRangeWarning,
-    PolarSubstituteWarning,
     PolarTable,
     section_coefficients,
     warn_outside,
 )
 from propmdao.formats.propellers import load_propeller
 from propmdao.geometry.blade import Blade, span_interpolation
-from propmdao.propeller.airfoils.airfoil import CHORD_FRACTION, naca4
+from propmdao.propeller.airfoils.airfoil import naca4
 from propmdao.propeller.airfoils.library import find_airfoil
 from propmdao.propeller.catalog import catalog_names
 from propmdao.propeller.description import Propeller
@@ -42,7 +38,7 @@ Section = Callable[..., PolarTable]
 def test_version_and_settings_are_recorded() -> None:
     settings = shipped_tables().settings
     assert settings.startswith("NeuralFoil 0.")
-    assert "model xxxlarge, n_crit 5" in settings
+    assert f"model xxxlarge, n_crit {SHIPPED_N_CRIT:g}," in settings
 
 
 @pytest.mark.parametrize("re", [2e4, 1e5, 5e5])
@@ -92,8 +88,7 @@ def test_c1_in_angle_and_reynolds_number(section: Section, alpha_deg: float) -> 
     table = section("e63")
 
     def coefficients(alpha: jax.Array, log_re: jax.Array) -> jax.Array:
-        found = section_coefficients(table, alpha[None], jnp.exp(log_re)[None])
-        return jnp.concatenate(found)
+        return jnp.concatenate(section_coefficients(table, alpha[None], jnp.exp(log_re)[None]))
 
     jacobian = jax.jacfwd(coefficients, (0, 1))
     alpha, log_re = jnp.radians(alpha_deg), jnp.log(1e5)  # 1e5 is a node of the table
@@ -175,56 +170,14 @@ def test_other_blends_count_by_camber(propeller: Callable[..., Propeller]) -> No
     np.testing.assert_allclose(weights[1], [e63 / (e63 + naca), naca / (e63 + naca)])
 
 
-def test_where_a_section_has_no_polars_those_of_another_stand_in_and_it_is_said(
-    propeller: Callable[..., Propeller], monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr(finding, "neuralfoil_installed", lambda: False)
-    says = r"'naca2212' has no polars.*NACA 4-digit.*own=\{'naca2212'.*\[polars\]"
-    with pytest.warns(PolarSubstituteWarning, match=says):
-        found = polars_for(propeller((0.0, "naca2212")))
-    np.testing.assert_array_equal(found.values, polars_for(propeller((0.0, "naca2412"))).values)
-
-
-@pytest.mark.parametrize("known", ["e63", "clarky", "naca4409", "naca0012"])
-def test_coordinates_of_a_known_shape_have_its_polars(
-    propeller: Callable[..., Propeller],
-    monkeypatch: pytest.MonkeyPatch,
-    tmp_path: Path,
-    known: str,
-) -> None:
-    monkeypatch.setattr(finding, "neuralfoil_installed", lambda: False)
-    section = find_airfoil(known)
-    x = np.append(CHORD_FRACTION[::-1], CHORD_FRACTION[1:])
-    half = 0.5 * section.thickness
-    z = np.append((section.camber + half)[::-1], (section.camber - half)[1:])
-    file = tmp_path / "mine.dat"
-    np.savetxt(file, np.transpose([x, z]), fmt="%.5f", header="mine", comments="")
-    found = polars_for(propeller((0.0, str(file))))
-    np.testing.assert_array_equal(found.values, polars_for(propeller((0.0, known))).values)
-
-
-def test_a_users_table_goes_before_the_catalogue(
-    propeller: Callable[..., Propeller], section: Section
-) -> None:
-    own = section("naca0012")
-    described = propeller((0.0, "clarky"), (1.0, "e63"))
-    polars = polars_for(described, own={"clarky": own})
-    span = span_interpolation(described.r_over_R, [0.2, 1.0])
-    table = blade_tables(polars, Blade.from_propeller(described), span)
-    at = jnp.full(2, 0.05), jnp.full(2, 1e5)
-    cl = section_coefficients(table, *at)[0]
-    assert cl[0] < 0.75 * cl[1]
-    with pytest.raises(PolarError, match="must hold one section"):
-        polars_for(described, own={"clarky": section("naca0012", 2)})
-
-
 @pytest.mark.slow
 @pytest.mark.parametrize("name", ["naca4", "e63", "clarky"])
 def test_neuralfoil_makes_the_same_tables_again(name: str) -> None:
     pytest.importorskip("neuralfoil", reason="the extra `polars` is not installed")
     camber, thickness = shape(name)
     alpha = np.array([-2.0, 3.0, 6.0])
-    cl, cd, cm, _ = neuralfoil_polar(0.045 * camber, 0.09 * thickness, alpha, REYNOLDS[2:])
+    section = 0.045 * camber, 0.09 * thickness
+    cl, cd, cm, _ = neuralfoil_polar(*section, alpha, REYNOLDS[2:], SHIPPED_N_CRIT)
     stored = shipped_tables().values[name][9, 3]  # camber 0.045, thickness 0.09
     columns = 48 + alpha.astype(int)
     # The rounding of the file, and what other versions of numpy may add.
@@ -254,7 +207,7 @@ def test_sections_between_the_nodes_are_near_neuralfoil(
         polars, polars.weights[1:2], jnp.array([camber.max()]), jnp.array([thickness.max()])
     )
     repeated = dataclasses.replace(table, values=jnp.repeat(table.values, alpha.size, axis=0))
-    found = section_coefficients(repeated, jnp.radians(alpha), jnp.full(alpha.size, re))
-    exact = neuralfoil_polar(camber, thickness, alpha, np.array([re]))
-    differences = [np.abs(np.asarray(found[k]) - exact[k][0]).mean() for k in range(2)]
+    between = section_coefficients(repeated, jnp.radians(alpha), jnp.full(alpha.size, re))
+    exact = neuralfoil_polar(camber, thickness, alpha, np.array([re]), SHIPPED_N_CRIT)
+    differences = [np.abs(np.asarray(between[k]) - exact[k][0]).mean() for k in range(2)]
     np.testing.assert_allclose(differences, BETWEEN_NODES[case], rtol=0.1)
