@@ -12,7 +12,6 @@ Two blades of the same thrust are written as sound files of the same full scale,
 
 import argparse
 import csv
-import dataclasses
 import tomllib
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
@@ -22,7 +21,6 @@ import numpy as np
 from rich.console import Console
 from rich.table import Table
 
-from propmdao.acoustics.broadband.self_noise import SelfNoise
 from propmdao.acoustics.levels.decibels import energy_sum_db, level_db, spl_db
 from propmdao.acoustics.sounds.recordings import (
     SAMPLE_RATE,
@@ -32,8 +30,11 @@ from propmdao.acoustics.sounds.recordings import (
 )
 from propmdao.analysis.self_noise import BANDS_HZ
 from propmdao.analysis.single_point import Analysis, analyze
-from propmdao.figures import acoustic_plots, directivity
-from propmdao.figures.acoustic_plots import Heard
+from propmdao.figures.directivity import directivity
+from propmdao.figures.of_analysis import analysis_sound, mechanism_levels
+from propmdao.figures.pressure import pressure, sampled
+from propmdao.figures.sound import Sound, band_levels, source_levels
+from propmdao.figures.spectra import narrowband_spectrum, third_octaves
 from propmdao.formats.propellers import load_propeller
 from propmdao.formats.wav import write_wav
 
@@ -77,9 +78,9 @@ class Hover(NamedTuple):
     n_microphones: int
 
     @property
-    def heard(self) -> Heard:
+    def sound(self) -> Sound:
         """Tones and broadband noise at all of them."""
-        return hear(self.analysis)
+        return analysis_sound(self.analysis)
 
     def observer(self, elevation_deg: float) -> int:
         """Which one hears at an elevation."""
@@ -88,12 +89,6 @@ class Hover(NamedTuple):
     def on_arc(self, level: np.ndarray) -> np.ndarray:
         """Leave the microphones out."""
         return level[self.n_microphones :]
-
-
-def hear(analysis: Analysis) -> Heard:
-    """Tones and broadband noise of an analysis."""
-    assert analysis.broadband is not None
-    return Heard(analysis.tones, BANDS_HZ, np.asarray(analysis.broadband.total))
 
 
 def hover(rpm: float, test: Mapping[str, Any], arc_deg: np.ndarray) -> Hover:
@@ -140,9 +135,9 @@ def band_comparisons(computed: Mapping[int, Hover], test: Mapping[str, Any]) -> 
     for what, key in (("broadband", "broadband_third_octave"), ("total", "third_octave")):
         for known in (one for one in test[key] if one["rpm"] in computed):
             at, angle = computed[known["rpm"]], known["elevation_deg"]
-            heard, i = at.heard, at.observer(angle)
-            noise = heard.broadband[i]
-            level = level_db(noise) if what == "broadband" else acoustic_plots.band_levels(heard, i)
+            sound, i = at.sound, at.observer(angle)
+            noise = sound.broadband[i]
+            level = level_db(noise) if what == "broadband" else band_levels(sound, i)
             nominal, spl = np.array(known["frequency_hz"], float), np.array(known["spl_db"])
             # Nominal frequencies and exact ones have the same number.
             number, ours = (np.round(10 * np.log10(f / 1000)) for f in (nominal, BANDS_HZ))
@@ -182,10 +177,10 @@ def _verdict(what: str, size: float, target: float) -> str:
     return f"{what}: {size:.2f} dB, target {target:.1f} dB: {verdict}"
 
 
-def records(heard: Heard, observer: int) -> dict[str, np.ndarray]:
+def records(sound: Sound, observer: int) -> dict[str, np.ndarray]:
     """Sound of a propeller, with its noise and the tones alone [Pa]."""
-    tones = tone_record(heard.tones.frequency_hz, heard.tones.total[observer], SECONDS)
-    noise = broadband_record(heard.bands_hz, heard.broadband[observer], tones.size)
+    tones = tone_record(sound.tones.frequency_hz, sound.tones.total[observer], SECONDS)
+    noise = broadband_record(sound.bands_hz, sound.broadband[observer], tones.size)
     return {"with broadband noise": tones + noise, "tones alone": tones}
 
 
@@ -196,11 +191,11 @@ def two_blades(thrust: float, distance: float, output: Path) -> dict[str, dict[s
         analysis = analyze(load_propeller(name), thrust=thrust, density=DENSITY, broadband=True,
                            observers=[(distance, MICROPHONE)])  # fmt: skip
         found[name] = analysis
-        blades[f"{name}, {analysis.rpm:.0f} rpm"] = records(hear(analysis), 0)
+        blades[f"{name}, {analysis.rpm:.0f} rpm"] = records(analysis_sound(analysis), 0)
     full = common_full_scale(*(sound["with broadband noise"] for sound in blades.values()))
     for (name, analysis), sound in zip(found.items(), blades.values(), strict=True):
         file = write_wav(output / f"{name}.wav", sound["with broadband noise"], full)
-        level = acoustic_plots.source_levels(hear(analysis))
+        level = source_levels(analysis_sound(analysis))
         print(f"{file.path.name}: {thrust:.2f} N at {analysis.rpm:.0f} rpm, "
               f"{level['total'][0]:.1f} dB, full scale {full:g} Pa")  # fmt: skip
     return blades
@@ -213,38 +208,32 @@ def draw(computed: Mapping[int, Hover], bands: Sequence[Comparison], test: Mappi
     arc = shown.on_arc(shown.elevation_deg)
     names = {rpm: f"{rpm} rpm" for rpm in computed}
     at = shown.observer(MICROPHONE)
-    acoustic_plots.spectrum(
-        {names[rpm]: one.heard for rpm, one in computed.items()}, at
+    narrowband_spectrum(
+        {names[rpm]: one.sound for rpm, one in computed.items()}, at
     ).savefig(output / "figure_4_12_spectrum.png")  # fmt: skip
 
-    sound = shown.heard
-    mechanisms = [field.name for field in dataclasses.fields(SelfNoise)]
-    parts = {name: np.asarray(getattr(shown.analysis.broadband, name))[at] for name in mechanisms}
-    lines = {"total": acoustic_plots.band_levels(sound, at),
-             "broadband": np.asarray(level_db(sound.broadband[at]))}  # fmt: skip
-    lines |= {name.replace("_", " "): np.asarray(level_db(power)) for name, power in parts.items()}
     known = {one.what: (one.frequency_hz, one.measured_db) for one in bands
              if (one.rpm, one.elevation_deg) == (RPM, MICROPHONE)}  # fmt: skip
-    acoustic_plots.third_octaves(BANDS_HZ, lines, known).savefig(
+    third_octaves(BANDS_HZ, mechanism_levels(shown.analysis, at), known).savefig(
         output / "figure_4_13_third_octaves.png"
     )
 
-    sources = acoustic_plots.source_levels(sound)
-    directivity.directivity(
+    sources = source_levels(shown.sound)
+    directivity(
         arc, {name: shown.on_arc(level) for name, level in sources.items()}
     ).savefig(output / "figure_4_14a_sources.png")  # fmt: skip
-    overall = {names[rpm]: one.on_arc(acoustic_plots.source_levels(one.heard)["total"])
+    overall = {names[rpm]: one.on_arc(source_levels(one.sound)["total"])
                for rpm, one in computed.items()}  # fmt: skip
-    heard = {names[one.rpm]: ([one.elevation_deg], [float(energy_sum_db(one.measured_db))])
+    measured = {names[one.rpm]: ([one.elevation_deg], [float(energy_sum_db(one.measured_db))])
              for one in bands if one.what == "total"}  # fmt: skip
-    directivity.directivity(arc, overall, heard).savefig(output / "figure_4_14b_total.png")
+    directivity(arc, overall, measured).savefig(output / "figure_4_14b_total.png")
 
     passage = test["blade_passage"]
     tone = {names[rpm]: one.on_arc(np.asarray(spl_db(one.analysis.tones.total[:, 0])))
             for rpm, one in computed.items()}  # fmt: skip
     known = {f"{rpm} rpm": (passage["elevation_deg"], level)
              for rpm, level in zip(passage["rpm"], passage["spl_db"], strict=True)}  # fmt: skip
-    directivity.directivity(arc, tone, known, "SPL at blade passage").savefig(
+    directivity(arc, tone, known, "SPL at blade passage").savefig(
         output / "figure_4_15_blade_passage.png"
     )
 
@@ -288,7 +277,8 @@ def main() -> None:
     print(*verdicts(tones, bands), sep="\n")
     draw(computed, bands, test, output)
     blades = two_blades(float(computed[RPM].analysis.steady.thrust), test["radius"], output)
-    acoustic_plots.pressure(blades, SAMPLE_RATE, 60.0 / RPM).savefig(output / "pressure.png")
+    turns = {name: sampled(sound, SAMPLE_RATE, 60.0 / RPM) for name, sound in blades.items()}
+    pressure(turns).savefig(output / "pressure.png")
     print(f"Tables, figures and sound: {output}")
 
 

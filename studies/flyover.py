@@ -20,9 +20,11 @@ from propmdao.acoustics.kinematics.observers import directions, sphere
 from propmdao.acoustics.kinematics.tracks import flyover_track
 from propmdao.analysis.flyover_results import PARTS, STEP, Flight
 from propmdao.analysis.flyovers import fly_over
-from propmdao.analysis.self_noise import BANDS_HZ
 from propmdao.analysis.single_point import SOUND_SPEED, Analysis, analyze
-from propmdao.figures import acoustic_plots, directivity
+from propmdao.figures.directivity import hemisphere_map
+from propmdao.figures.histories import level_history
+from propmdao.figures.of_analysis import analysis_sound
+from propmdao.figures.sound import source_levels
 from propmdao.formats.propellers import load_propeller
 
 PROPELLER = load_propeller("apcsf_11x4.7")
@@ -35,13 +37,12 @@ TRIPPED = "total, tripped"
 
 def hemisphere(found: Analysis) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Elevations, azimuths from the nose [deg] and levels below the aircraft, flying along [dB]."""
-    assert found.broadband is not None
-    heard = acoustic_plots.Heard(found.tones, BANDS_HZ, np.asarray(found.broadband.total))
     elevation, azimuth = np.linspace(-90.0, 0.0, 31), np.linspace(0.0, 360.0, 73)
     axes = np.asarray(poses(TRACK, np.zeros(1)).rotation)[0]
     seen = directions(sphere(FLIGHT.height, elevation, azimuth) @ axes)
     # In axial flight it is the same all around the rotor's axis.
-    level = np.interp(seen.elevation_deg, ARC, acoustic_plots.source_levels(heard)["total"])
+    total = source_levels(analysis_sound(found))["total"]
+    level = np.interp(seen.elevation_deg, ARC, total)
     return elevation, azimuth, level.reshape(elevation.size, azimuth.size)
 
 
@@ -70,11 +71,11 @@ def main() -> None:
         level = summary["levels"]["total"]
         print(f"{name}: LAmax {level['lamax_dba']:.1f} dBA, SEL {level['sel_dba']:.1f} dBA, "
               f"EPNL {summary['epnl']:.1f} EPNdB")  # fmt: skip
-    acoustic_plots.level_history(
+    level_history(
         heard.time, levels, f"A-weighted level of {STEP:g} s, dB re 20 µPa",
         {"heard from overhead": FLIGHT.miss_distance / SOUND_SPEED},
     ).savefig(output / "levels.png")  # fmt: skip
-    directivity.hemisphere_map(
+    hemisphere_map(
         *hemisphere(found), f"OASPL at {FLIGHT.height:g} m, dB re 20 µPa; azimuth from the nose"
     ).savefig(output / "hemisphere.png")
     print(f"Levels and figures: {output}")

@@ -33,7 +33,10 @@ from propmdao.analysis.single_point import Analysis, analyze
 from propmdao.components.drivers.gradient_search import Search, run_slsqp
 from propmdao.components.drivers.search_history import read_history
 from propmdao.components.noise_objective_comp import soft_maximum_db
-from propmdao.figures import acoustic_plots, directivity, plots, searches
+from propmdao.figures import searches
+from propmdao.figures.blades import blade_comparison
+from propmdao.figures.directivity import directivity
+from propmdao.figures.spectra import third_octaves
 from propmdao.propeller.description import Propeller
 from propmdao.records.fidelity import Fidelity
 
@@ -210,13 +213,13 @@ def draw(results: Results, output: Path) -> None:
         tones[name] = oaspl_db(of.tones.total[n:])
         total[name] = [one["oaspl_dba"] for one in heard[n:]]
         bands[name] = [one["spl_db"] for one in heard[n + thesis.MICROPHONE_INDEX]["broadband"]]
-    spectrum = acoustic_plots.third_octaves(BANDS_HZ, bands)
+    spectrum = third_octaves(BANDS_HZ, bands)
     spectrum.axes[0].set_xlim(left=500.0)  # nothing is drawn below
     for name, figure in (
         ("history", searches.history(runs, "objective, dB or dBA", TOLERANCE)),
-        ("blades", plots.blades(results.blades, [0.15, 0.5, 0.85])),
-        ("tones", directivity.directivity(elevations, tones, label="tones")),
-        ("total", directivity.directivity(elevations, total, label="A-weighted total")),
+        ("blades", blade_comparison(results.blades, [0.15, 0.5, 0.85])),
+        ("tones", directivity(elevations, tones, label="tones")),
+        ("total", directivity(elevations, total, label="A-weighted total")),
         ("broadband", spectrum),
     ):
         figure.savefig(output / f"{name}.png")

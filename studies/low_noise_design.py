@@ -24,7 +24,12 @@ from propmdao.analysis.comparisons import ROWS, Cell, at_observer, print_compari
 from propmdao.analysis.single_point import Analysis, analyze
 from propmdao.components import DifferentialEvolutionDriver, PropellerGroup
 from propmdao.components.geometry_comp import blade_distributions
-from propmdao.figures import plots
+from propmdao.figures.blades import blade_comparison
+from propmdao.figures.convergence import convergence
+from propmdao.figures.directivity import directivity
+from propmdao.figures.pressure import blade_passage, pressure
+from propmdao.figures.sound import Sound, source_levels
+from propmdao.figures.spectra import harmonic_spectrum
 from propmdao.formats.naca_blade import with_naca_sections
 from propmdao.formats.propellers import load_propeller
 from propmdao.propeller.airfoils.airfoil import max_camber_for_design_lift
@@ -185,13 +190,17 @@ def main() -> None:
 
     level = "OASPL at the microphone, dB re 20 µPa"
     start = {"APC-SF 11x4.7": at_observer(baseline, MICROPHONE_INDEX)["oaspl_db"]}
-    heard = {"APC-SF 11x4.7": baseline.tones, "optimum": optimum.tones}
+    compared = {"APC-SF 11x4.7": Sound.of_tones(baseline.tones),
+                "optimum": Sound.of_tones(optimum.tones)}  # fmt: skip
+    passages = {name: blade_passage(sound.tones, MICROPHONE_INDEX)
+                for name, sound in compared.items()}  # fmt: skip
+    levels = {name: source_levels(sound) for name, sound in compared.items()}
     for name, figure in (
-        ("convergence", plots.convergence(*designs_tried(output, torque_limit), level, start)),
-        ("blades", plots.blades({"APC-SF 11x4.7": BASELINE, "optimum": best}, [*AT.values()])),
-        ("spectrum", plots.spectrum(heard, MICROPHONE_INDEX)),
-        ("pressure", plots.pressure(heard, MICROPHONE_INDEX)),
-        ("directivity", plots.directivity(heard, DIRECTIVITY, MICROPHONE)),
+        ("convergence", convergence(*designs_tried(output, torque_limit), level, start)),
+        ("blades", blade_comparison({"APC-SF 11x4.7": BASELINE, "optimum": best}, [*AT.values()])),
+        ("spectrum", harmonic_spectrum(compared, MICROPHONE_INDEX)),
+        ("pressure", pressure(passages)),
+        ("directivity", directivity(DIRECTIVITY, levels, microphone_deg=MICROPHONE)),
     ):
         figure.savefig(output / f"{name}.png")
     print(f"\nTable, figures, the blades as propeller files and every design tried: {output}")

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import dataclasses
+import functools
+import operator
 
 import numpy as np
 from jax import Array
@@ -22,18 +24,17 @@ class Tones:
     ----------
     frequency_hz : (n_harmonics,) array
         Frequencies f_m = m B Omega / 2 pi [Hz].
-    thickness, loading : (n_observers, n_harmonics) complex arrays
-        Amplitudes P_m of the two noise sources [Pa].
+    parts : dict of str to (n_observers, n_harmonics) complex array
+        Amplitudes P_m of each noise source, "thickness" and "loading" [Pa].
     """
 
     frequency_hz: Array
-    thickness: Array
-    loading: Array
+    parts: dict[str, Array]
 
     @property
     def total(self) -> Array:
         """Amplitudes of the whole pressure [Pa]: pressures add, levels never do."""
-        return self.thickness + self.loading
+        return functools.reduce(operator.add, self.parts.values())
 
 
 @dataclasses.dataclass(frozen=True)

@@ -175,11 +175,11 @@ def _write(options: argparse.Namespace, heard: Flyover, distance: float) -> dict
     if options.figures is not None:
         from propmdao.analysis.flyover_results import PARTS, STEP
         from propmdao.analysis.single_point import SOUND_SPEED
-        from propmdao.figures import acoustic_plots
+        from propmdao.figures.histories import level_history
 
         label = f"A-weighted level of {STEP:g} s, dB re 20 µPa"
         levels = {part: heard.level_dba(part) for part in PARTS}
         moments = {"heard from the nearest point": distance / SOUND_SPEED}
-        figure = acoustic_plots.level_history(heard.time, levels, label, moments)
+        figure = level_history(heard.time, levels, label, moments)
         written["figures"] = save_figures(options.figures, {"levels": figure})
     return written

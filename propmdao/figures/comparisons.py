@@ -1,8 +1,4 @@
-"""Figures of measurements and of what was computed at the same points.
-
-All are 1200 pixels wide, without a display. Measured values are dots, computed ones
-lines.
-"""
+"""Figures of measurements and of results computed at the same points: dots and lines."""
 
 from __future__ import annotations
 
@@ -13,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from propmdao.analysis.wind_tunnel import Points
-from propmdao.figures.style import GRID, LINE_STYLES, RUN_COLORS, page
+from propmdao.figures.style import GRID, LEVEL, LINE_STYLES, RUN_COLORS, page
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -27,9 +23,9 @@ def performance(measured: Points, computed: Mapping[str, Points]) -> Figure:
     Parameters
     ----------
     measured : Points
-        With flight speed; runs near the same multiple of 500 rpm belong together.
+        Measured points with flight speed; runs near the same multiple of 500 rpm belong together.
     computed : mapping of str to Points
-        At the same points, by name: a column of axes each.
+        Computed results at the same points, by name: a column of axes each.
 
     Returns
     -------
@@ -75,9 +71,9 @@ def static_performance(measured: Points, computed: Mapping[str, Points]) -> Figu
     Parameters
     ----------
     measured : Points
-        Without flight speed.
+        Measured points without flight speed.
     computed : mapping of str to Points
-        At the same points, by name: a line each.
+        Computed results at the same points, by name: a line each.
 
     Returns
     -------
@@ -109,9 +105,9 @@ def over_rpm_and_advance_ratio(
     Parameters
     ----------
     static, dynamic : Points
-        Where.
-    values : mapping of str to (of static, of dynamic)
-        What, by the label of its axis: a row of axes each.
+        Points without and with flight speed.
+    values : mapping of str to (static values, dynamic values)
+        Values at both, by the label of their axis: a row of axes each.
 
     Returns
     -------
@@ -146,13 +142,13 @@ def tone_directivity(
     Parameters
     ----------
     elevation_deg : (n,) array
-        Where it was computed [deg].
+        Elevations of the computed levels [deg].
     computed : mapping of str to (n,) array
-        SPL by name [dB].
+        Computed SPL by name [dB].
     measured_at_deg : (n_microphones,) array
-        Where it was measured [deg].
+        Elevations of the microphones [deg].
     measured : mapping of str to (n_microphones,) array
-        SPL by the same names [dB].
+        Measured SPL by the same names [dB].
 
     Returns
     -------
@@ -167,7 +163,7 @@ def tone_directivity(
         axes.plot(np.asarray(measured_at_deg), np.asarray(measured[name]), "o", color=color)
     axes.set(
         xlabel="elevation from the rotor plane, deg (negative: wake side)",
-        ylabel="SPL at blade passage, dB re 20 µPa",
+        ylabel=f"SPL at blade passage, {LEVEL}",
     )
     axes.set_xticks(np.arange(-67.5, 68.0, 22.5))
     axes.legend(title="measured (dots) and computed (lines)", loc="lower center")

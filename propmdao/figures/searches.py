@@ -24,10 +24,10 @@ def history(
     Parameters
     ----------
     runs : mapping of str to (objective, violation)
-        By name, (n_evaluations,) arrays each: the objective, nan where the analysis failed, and
-        the largest violation in driver scaling.
+        Searches by name, (n_evaluations,) arrays each: the objective, nan where the analysis
+        failed, and the largest violation in driver scaling.
     label : str
-        The objectives with their unit, for the axis.
+        Name of the objectives with their unit, for the axis.
     tolerance : float
         Violation that counts as none.
 
@@ -69,11 +69,11 @@ def line_scans(
     Parameters
     ----------
     position : (n,) array
-        Equally spaced along each line.
+        Positions along each line, equally spaced.
     lines : mapping of str to (n_lines, n) array
-        Values by response.
+        Values on each line, by response.
     labels : mapping of str to str
-        Responses with their units, for the axes.
+        Names of the responses with their units, for the axes.
 
     Returns
     -------

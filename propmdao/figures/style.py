@@ -1,7 +1,14 @@
-"""What all figures share: colours, line styles, the page."""
+"""What all figures share: the page, axes, colours, line styles.
+
+Every figure is a `matplotlib.figure.Figure` of 1200 pixels' width that needs no display;
+``figure.savefig("name.png")`` writes it. A noise source has one colour in all of them, and what is
+measured is a dot of the colour of the line that it belongs to.
+"""
 
 from __future__ import annotations
 
+import itertools
+from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING, Any, Literal, cast
 
 import numpy as np
@@ -18,12 +25,26 @@ except ModuleNotFoundError as error:
     ) from None
 
 # Okabe and Ito's palette, which colour-blind people can tell apart.
-PART_COLORS = {"thickness": "#0072B2", "loading": "#D55E00", "total": "#000000"}
+#: Colours of noise sources, in the order in which they are drawn.
+SOURCE_COLORS = {
+    "thickness": "#0072B2",
+    "loading": "#D55E00",
+    "broadband": "#009E73",
+    "total": "#000000",
+}
 BLADE_COLORS = ("#777777", "#009E73", "#CC79A7", "#E69F00")
 # A blade keeps its colour where it is one of several runs.
 RUN_COLORS = (*BLADE_COLORS, "#0072B2", "#D55E00", "#000000")
+_OTHER_COLORS = ("#E69F00", "#CC79A7", "#56B4E9", "#8C564B", "#999999", "#F0E442")
+#: Line styles of what is compared: the first dashed, the second solid.
 LINE_STYLES = ("--", "-", "-.", ":")
 GRID: dict[str, Any] = {"color": "0.9", "linewidth": 0.8}
+#: Unit of levels.
+LEVEL = "dB re 20 µPa"
+
+Floats = npt.NDArray[np.float64]
+#: Measured (abscissa, level in dB) by the name of the line that it belongs to.
+Measured = Mapping[str, tuple[npt.ArrayLike, npt.ArrayLike]]
 
 
 def page(height: float, layout: Literal["constrained"] | None = "constrained") -> Figure:
@@ -32,14 +53,14 @@ def page(height: float, layout: Literal["constrained"] | None = "constrained") -
     Parameters
     ----------
     height : float
-        Of 10 for a square.
+        Height where the width is 10.
     layout : "constrained" or None
         How matplotlib lays it out, if it does.
 
     Returns
     -------
     Figure
-        The figure.
+        The empty figure.
     """
     return Figure(figsize=(10.0, height), dpi=120, layout=layout)
 
@@ -50,7 +71,7 @@ def rows_of_axes(n: int) -> tuple[Figure, npt.NDArray[Any]]:
     Parameters
     ----------
     n : int
-        How many.
+        Number of axes.
 
     Returns
     -------
@@ -65,17 +86,15 @@ def rows_of_axes(n: int) -> tuple[Figure, npt.NDArray[Any]]:
     return figure, rows
 
 
-def half_circle(loudest: float, step_deg: float, label: str) -> tuple[Figure, PolarAxes]:
+def half_circle(loudest: float, label: str) -> tuple[Figure, PolarAxes]:
     """Make a figure of levels over elevation: half a circle, from the wake to ahead.
 
     Parameters
     ----------
     loudest : float
         Highest level to be drawn [dB]; 40 dB below it is the centre.
-    step_deg : float
-        Between the elevations that are named [deg].
     label : str
-        Of the levels, with their unit.
+        Name of the levels, with their unit.
 
     Returns
     -------
@@ -91,7 +110,7 @@ def half_circle(loudest: float, step_deg: float, label: str) -> tuple[Figure, Po
     axes.set_ylim(floor, top)
     axes.set_yticks(np.arange(floor + 10.0, top + 1.0, 10.0))
     named = {-90.0: "-90°, wake", 0.0: "0°, rotor plane", 90.0: "+90°, ahead"}
-    ticks = np.arange(-90.0, 91.0, step_deg)
+    ticks = np.arange(-90.0, 91.0, 22.5)
     axes.set_thetagrids(ticks, [named.get(tick, f"{tick:+g}°") for tick in ticks])
     for text, tick in zip(axes.get_xticklabels(), ticks, strict=True):
         text.set_horizontalalignment("left" if abs(tick) < 90.0 else "center")
@@ -99,3 +118,39 @@ def half_circle(loudest: float, step_deg: float, label: str) -> tuple[Figure, Po
     # Along the straight edge, beside the levels of the circles.
     figure.text(0.06, 0.27, label, rotation=90.0, va="center")
     return figure, axes
+
+
+def line_colors(names: Iterable[str]) -> dict[str, str]:
+    """Give each line of a figure its colour.
+
+    Parameters
+    ----------
+    names : iterable of str
+        Names of the lines.
+
+    Returns
+    -------
+    dict of str to str
+        Colours by name: noise sources have their own ones, which other lines leave alone.
+    """
+    names = list(names)
+    others = itertools.cycle(_OTHER_COLORS if set(names) & set(SOURCE_COLORS) else RUN_COLORS)
+    return {name: SOURCE_COLORS.get(name) or next(others) for name in names}
+
+
+def level_line(name: str) -> dict[str, Any]:
+    """Width of a line of levels: the total is broad and below the others.
+
+    The total is often that of its loudest part, which would hide it.
+
+    Parameters
+    ----------
+    name : str
+        Name of the noise source.
+
+    Returns
+    -------
+    dict
+        Options of matplotlib's ``plot``.
+    """
+    return {"linewidth": 4.0, "zorder": 1.9} if name == "total" else {"linewidth": 2.0}

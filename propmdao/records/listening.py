@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
-from typing import Literal
+from typing import Literal, get_args
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -11,6 +11,8 @@ from numpy.typing import ArrayLike, NDArray
 from propmdao.records.air import Air, require_known_air
 
 Floats = NDArray[np.float64]
+#: What places a group of observers, by the words of the command line.
+GroupKind = Literal["arc", "point", "circle", "grid", "hemisphere"]
 
 
 @dataclasses.dataclass(frozen=True)
@@ -82,6 +84,73 @@ class Surroundings:
         """
         x, y, z = np.moveaxis(np.asarray(positions, float), -1, 0)
         return np.stack([-z, y, x] if self.level_flight else [x, y, z], axis=-1)
+
+
+@dataclasses.dataclass(frozen=True)
+class ObserverGroup:
+    """Neighbours in a list of observers that were placed together.
+
+    Attributes
+    ----------
+    name : str
+        Name of the group, for titles and tables.
+    kind : {"arc", "point", "circle", "grid", "hemisphere"}
+        How its observers were placed.
+    n : int
+        Number of its observers.
+
+    Raises
+    ------
+    ValueError
+        If it has no observers or its kind is another word.
+    """
+
+    name: str
+    kind: GroupKind
+    n: int
+
+    def __post_init__(self) -> None:
+        """Refuse groups that cannot be."""
+        if self.kind not in get_args(GroupKind):
+            kinds = ", ".join(get_args(GroupKind))
+            raise ValueError(f"kind of observers must be one of {kinds}; it is {self.kind!r}")
+        if self.n < 1:
+            raise ValueError(f"group of observers {self.name!r} needs at least 1; it has {self.n}")
+
+
+@dataclasses.dataclass(frozen=True, eq=False)
+class Listening:
+    """Observers of a propeller, and what is around it.
+
+    Attributes
+    ----------
+    observers : (n_observers, 3) array
+        Positions from the rotor centre in the rotor's axes [m]; the observers fly along.
+    surroundings : Surroundings
+        Ground and air on the way to the observers.
+    groups : tuple of ObserverGroup
+        Groups of consecutive observers, together all of them; an empty tuple means that all
+        observers are one group.
+
+    Raises
+    ------
+    ValueError
+        If the observers are not (n, 3), or the groups do not hold as many as there are.
+    """
+
+    observers: Floats = dataclasses.field(default_factory=lambda: np.zeros((0, 3)))
+    surroundings: Surroundings = Surroundings()
+    groups: tuple[ObserverGroup, ...] = ()
+
+    def __post_init__(self) -> None:
+        """Refuse positions without three coordinates and groups of other observers."""
+        # The attribute of a frozen dataclass can only be set this way.
+        object.__setattr__(self, "observers", require_positions(self.observers))
+        n_grouped = sum(group.n for group in self.groups)
+        if self.groups and n_grouped != len(self.observers):
+            raise ValueError(
+                f"groups must hold all {len(self.observers)} observers; they hold {n_grouped}"
+            )
 
 
 def require_positions(observers: ArrayLike) -> Floats:

@@ -6,13 +6,11 @@ import numpy as np
 import pytest
 import soundfile
 
-from propmdao.acoustics.kinematics.observers import hemisphere
 from propmdao.acoustics.sounds.recordings import SAMPLE_RATE
 from propmdao.analysis.single_point import analyze
 from propmdao.analysis.sounds import pressure_record, write_sound
 from propmdao.formats.propellers import load_propeller
 from propmdao.records.fidelity import Fidelity
-from propmdao.records.listening import Surroundings
 
 PROPELLER = load_propeller("apcsf_11x4.7")
 COARSE = Fidelity(n_chordwise=3, n_spanwise=10, n_contour=21, n_surface_span=12, n_harmonics=4)
@@ -61,24 +59,11 @@ def test_what_cannot_be_heard(hover, tmp_path):
 
 
 def test_figures_of_what_there_is(hover):
-    figures = pytest.importorskip("propmdao.figures.analysis_figures").analysis_figures
-    assert set(figures(hover, "blade")) == {
+    figures = pytest.importorskip("propmdao.figures.of_analysis").analysis_figures
+    assert set(figures(hover)) == {
         "spectrum", "pressure", "third_octaves", "directivity"
     }  # fmt: skip
     tones = run(observers=ARC[:2])
-    assert set(figures(tones, "blade")) == {"spectrum", "pressure"}
+    assert set(figures(tones)) == {"spectrum", "pressure"}
     with pytest.raises(ValueError, match="figures need observers"):
-        figures(run(observers=[]), "blade")
-
-
-def test_the_hemisphere_is_that_of_the_last_observers():
-    """Over ground in level flight it is not the same all around."""
-    figures = pytest.importorskip("propmdao.figures.analysis_figures").analysis_figures
-    around = Surroundings(ground=20.0, level_flight=True)
-    x, y, z = around.from_ground_axes(hemisphere(5.0, 45.0)).T
-    across = np.hypot(x, y)
-    places = np.stack([np.hypot(across, z), *np.degrees([np.arctan2(z, across), np.arctan2(y, x)])])
-    found = run(speed=8.0, observers=[*ARC, *places.T], surroundings=around)
-    drawn = figures(found, "blade", [(5.0, 45.0)])["hemisphere"]
-    label = drawn.axes[1].get_ylabel()
-    assert "OASPL at 5 m" in label and "azimuth from the nose" in label
+        figures(run(observers=[]))

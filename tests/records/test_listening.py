@@ -1,0 +1,30 @@
+"""Observers come in groups that together are all of them."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from propmdao.records.listening import Listening, ObserverGroup, Surroundings
+
+
+def test_by_default_nobody_listens_in_a_free_field():
+    listening = Listening()
+    assert listening.observers.shape == (0, 3)
+    assert listening.surroundings == Surroundings() and listening.groups == ()
+
+
+def test_groups_hold_all_observers():
+    groups = (ObserverGroup("ahead", "arc", 3), ObserverGroup("below", "hemisphere", 2))
+    assert Listening(np.zeros((5, 3)), groups=groups).groups == groups
+    with pytest.raises(ValueError, match="groups must hold all 4 observers; they hold 5"):
+        Listening(np.zeros((4, 3)), groups=groups)
+
+
+def test_what_is_no_group_or_no_position():
+    with pytest.raises(ValueError, match="kind of observers must be one of .*; it is 'sphere'"):
+        ObserverGroup("around", "sphere", 3)  # type: ignore[arg-type]
+    with pytest.raises(ValueError, match="group of observers 'nobody' needs at least 1; it has 0"):
+        ObserverGroup("nobody", "arc", 0)
+    with pytest.raises(ValueError, match=r"observers must be an \(n, 3\) array .* it is \(3,\)"):
+        Listening(np.zeros(3))
