@@ -15,7 +15,6 @@ import jax.numpy as jnp
 import numpy as np
 import pytest
 
-from propmdao.aerodynamics.lattice.strips import strip_radii
 from propmdao.aerodynamics.sections.laws import viscous_sections
 from propmdao.aerodynamics.sections.polars.propeller_polars import polars_for
 from propmdao.aerodynamics.solutions.axial import WAKE_AGES, solve_steady
@@ -23,8 +22,12 @@ from propmdao.aerodynamics.trim import solve_rotation_speed
 from propmdao.aerodynamics.vortices.biot_savart import filament_velocities
 from propmdao.analysis.single_point import analyze
 from propmdao.formats.propellers import load_propeller
-from propmdao.geometry.blade import Blade, span_interpolation
-from propmdao.geometry.lattice import lattice_nodes, lattice_span
+from propmdao.geometry.blade import Blade
+from propmdao.geometry.lattice import (
+    lattice_interpolation,
+    lattice_nodes,
+    strip_interpolation,
+)
 from propmdao.records.fidelity import Fidelity
 
 SLOW_FLYER = load_propeller("apcsf_11x4.7")
@@ -36,7 +39,7 @@ RADIUS, SPEED, DENSITY, THRUST, OMEGA = 0.1397, 8.0, 1.225, 1.2, 422.0
 def nodes():
     fidelity = Fidelity()
     stations = SLOW_FLYER.r_over_R
-    span = span_interpolation(stations, lattice_span(stations[0], fidelity.n_spanwise))
+    span = lattice_interpolation(stations, fidelity.n_spanwise)
     return lattice_nodes(Blade.from_propeller(SLOW_FLYER), span, fidelity.n_chordwise)
 
 
@@ -46,7 +49,7 @@ def sections(request):
     if request.param == "inviscid":
         return None
     stations = SLOW_FLYER.r_over_R
-    middle = span_interpolation(stations, strip_radii(stations[0], Fidelity().n_spanwise))
+    middle = strip_interpolation(stations, Fidelity().n_spanwise)
     return viscous_sections(polars_for(SLOW_FLYER), Blade.from_propeller(SLOW_FLYER), middle, 340.0)
 
 

@@ -12,13 +12,14 @@ from jax import Array
 from propmdao.acoustics.levels.decibels import energy_sum_db, level_db
 from propmdao.acoustics.levels.weighting import level_dba
 from propmdao.aerodynamics.lattice.rings import vortex_rings
-from propmdao.aerodynamics.lattice.strips import blade_strips, strip_radii
+from propmdao.aerodynamics.lattice.strips import blade_strips
 from propmdao.analysis.self_noise import BANDS_HZ, self_noise, strip_flow
 from propmdao.components.bases.jax_component import Arrays
 from propmdao.components.bases.nodes_comp import STATIC, OperatingPointsComp
 from propmdao.components.inputs.model_options import declare_trip
 from propmdao.components.inputs.noise_inputs import add_noise_inputs, check_rotor, noise_state
-from propmdao.geometry.blade import Blade, span_interpolation
+from propmdao.geometry.blade import Blade
+from propmdao.geometry.lattice import strip_interpolation
 from propmdao.propeller.description import Propeller
 from propmdao.records.fidelity import Fidelity
 from propmdao.records.models import SelfNoiseModel
@@ -116,10 +117,9 @@ class BroadbandComp(OperatingPointsComp):
         for quantity in BROADBAND_LEVELS.values():
             self.add_point_output(quantity.variable, shape=(n_observers,), desc=quantity.meaning)
         stations = propeller.r_over_R
-        radii = strip_radii(float(stations[0]), ns)
         self.function = _broadband
         self.static = int(propeller.n_blades), SelfNoiseModel(trip=self.options["trip"])
-        self.constants = blade, span_interpolation(stations, radii)
+        self.constants = blade, strip_interpolation(stations, ns)
 
     def check(self, inputs: Any, values: Any) -> None:
         check_rotor(inputs, "lattice_nodes")

@@ -8,12 +8,11 @@ from typing import Any
 import numpy as np
 import openmdao.api as om
 
-from propmdao.aerodynamics.lattice.strips import strip_radii
 from propmdao.aerodynamics.sections.polars.family import SectionPolars, blade_tables
 from propmdao.components.bases.jax_component import Arrays, JaxComponent, evaluate
 from propmdao.components.bases.nodes_comp import STATIC
 from propmdao.components.inputs.rotor_inputs import require_diameter
-from propmdao.geometry.blade import Blade, design_lift_coefficient, span_interpolation
+from propmdao.geometry.blade import Blade, design_lift_coefficient
 from propmdao.geometry.meshes import blade_meshes, mesh_radii
 from propmdao.propeller.description import Propeller
 from propmdao.records.fidelity import Fidelity
@@ -112,17 +111,12 @@ class GeometryComp(JaxComponent):
         units = {"diameter": "m", "beta": "rad"}
         for name, value in initial.items():
             self.add_input(name, val=value, units=units.get(name), tags=STATIC)
-        sections = None
-        if polars is not None:
-            radii = strip_radii(float(stations[0]), fidelity.n_spanwise)
-            sections = span_interpolation(stations, radii)
         self.function = _geometry
         self.static = fidelity
         self.constants = (
             Blade.from_propeller(propeller),
             mesh_radii(stations, fidelity.n_spanwise, fidelity.n_surface_span),
             polars,
-            sections,
         )
         # A solver around the propeller, Newton's say, starts from these without running this first.
         outputs = evaluate(self.function, self.static, self.constants, initial)
@@ -151,7 +145,7 @@ class GeometryComp(JaxComponent):
 
 
 def _geometry(inputs: Arrays, constants: Any, static: Fidelity) -> Arrays:
-    blade, radii, polars, sections = constants
+    blade, radii, polars = constants
     changed = {**inputs, "radius": 0.5 * inputs["diameter"][0]}
     del changed["diameter"]
     if "design_lift_coefficient" in changed:
@@ -159,8 +153,8 @@ def _geometry(inputs: Arrays, constants: Any, static: Fidelity) -> Arrays:
             "design_lift_coefficient"
         ) / design_lift_coefficient(blade.camber_shape)
     blade = dataclasses.replace(blade, **changed)
-    lattice, surface = blade_meshes(blade, radii, static.n_chordwise, static.n_contour)
-    outputs = {"lattice_nodes": lattice, "surface_nodes": surface}
+    meshes = blade_meshes(blade, radii, static.n_chordwise, static.n_contour)
+    outputs = {"lattice_nodes": meshes.lattice, "surface_nodes": meshes.surface}
     if polars is not None:
-        outputs["section_polars"] = blade_tables(polars, blade, sections).values
+        outputs["section_polars"] = blade_tables(polars, blade, radii.strips).values
     return outputs

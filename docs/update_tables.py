@@ -19,7 +19,6 @@ from pathlib import Path
 
 import numpy as np
 
-from propmdao.aerodynamics.lattice.strips import strip_radii
 from propmdao.aerodynamics.sections.laws import viscous_sections
 from propmdao.aerodynamics.sections.polars.propeller_polars import polars_for
 from propmdao.aerodynamics.solutions.axial import WAKE_AGES, solve_steady
@@ -28,8 +27,12 @@ from propmdao.analysis.comparisons import Rows, markdown
 from propmdao.analysis.single_point import SOUND_SPEED, analyze
 from propmdao.analysis.wind_tunnel import Points, calibrated_twist_deg, computed
 from propmdao.formats.propellers import load_propeller
-from propmdao.geometry.blade import Blade, span_interpolation
-from propmdao.geometry.lattice import lattice_nodes, lattice_span
+from propmdao.geometry.blade import Blade
+from propmdao.geometry.lattice import (
+    lattice_interpolation,
+    lattice_nodes,
+    strip_interpolation,
+)
 from propmdao.propeller.description import Propeller
 
 HERE = Path(__file__).parent
@@ -49,8 +52,8 @@ DEG = np.pi / 180.0
 def solve(speed: float, n_chordwise: int = 8, n_spanwise: int = 24, ages: np.ndarray = WAKE_AGES):
     """Steady solution of the slow flyer at 4200 rpm on a lattice, in a wake."""
     blade, stations = Blade.from_propeller(SLOW_FLYER), SLOW_FLYER.r_over_R
-    radii = lattice_span(stations[0], n_spanwise), strip_radii(stations[0], n_spanwise)
-    span, strips = (span_interpolation(stations, of) for of in radii)
+    span = lattice_interpolation(stations, n_spanwise)
+    strips = strip_interpolation(stations, n_spanwise)
     nodes = lattice_nodes(blade, span, n_chordwise)
     sections = viscous_sections(polars_for(SLOW_FLYER), blade, strips, SOUND_SPEED)
     return solve_steady(

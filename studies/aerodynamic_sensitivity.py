@@ -21,7 +21,6 @@ from aerodynamic_validation import measurements, show, write_csv
 from scipy.optimize import brentq
 
 from propmdao.aerodynamics.coefficients import coefficients
-from propmdao.aerodynamics.lattice.strips import strip_radii
 from propmdao.aerodynamics.sections.laws import viscous_sections
 from propmdao.aerodynamics.sections.polars import neuralfoil_tables
 from propmdao.aerodynamics.sections.polars.family import SectionPolars, shape_values
@@ -46,8 +45,12 @@ from propmdao.analysis.wind_tunnel import (
 )
 from propmdao.figures import comparisons
 from propmdao.formats.propellers import load_propeller
-from propmdao.geometry.blade import Blade, span_interpolation
-from propmdao.geometry.lattice import lattice_nodes, lattice_span
+from propmdao.geometry.blade import Blade
+from propmdao.geometry.lattice import (
+    lattice_interpolation,
+    lattice_nodes,
+    strip_interpolation,
+)
 from propmdao.propeller.description import Propeller
 
 PITCH = {"apcsf_11x4.7": 0.11938, "apce_10x7": 0.1778}  # m, the maker's: 4.7 and 7 in
@@ -135,8 +138,8 @@ def computed_with_wake(
     """As `computed`, with the induced velocity in the wake times `transport`."""
     propeller = dataclasses.replace(propeller, beta_deg=propeller.beta_deg + twist_offset_deg)
     blade, stations = Blade.from_propeller(propeller), propeller.r_over_R
-    nodes = lattice_nodes(blade, span_interpolation(stations, lattice_span(stations[0], 24)), 8)
-    strips = span_interpolation(stations, strip_radii(stations[0], 24))
+    nodes = lattice_nodes(blade, lattice_interpolation(stations, 24), 8)
+    strips = strip_interpolation(stations, 24)
     sections = viscous_sections(polars_for(propeller), blade, strips, SOUND_SPEED)
     n, radius = propeller.n_blades, 0.5 * propeller.diameter
     lattice, found = lattice_geometry(nodes, n, radius), []

@@ -23,10 +23,10 @@ from propmdao.aerodynamics.lattice.rings import BOUND_CORE, blade_influence, wak
 from propmdao.aerodynamics.solutions.axial import WAKE_AGES, solve_steady
 from propmdao.aerodynamics.solutions.lattice_loads import lattice_geometry, loads_with_wake
 from propmdao.aerodynamics.vortices.cores import core_radius
-from propmdao.aerodynamics.wakes import ages, helical, momentum
+from propmdao.aerodynamics.wakes import helical, momentum
 from propmdao.formats.propellers import load_propeller
-from propmdao.geometry.blade import Blade, span_interpolation
-from propmdao.geometry.lattice import lattice_nodes, lattice_span
+from propmdao.geometry.blade import Blade
+from propmdao.geometry.lattice import lattice_interpolation, lattice_nodes
 from propmdao.propeller.description import Propeller
 
 CASES = [(name, 2, J) for name in ("apcsf_11x4.7", "apce_10x7") for J in (0.0, 0.2, 0.4)]
@@ -48,7 +48,7 @@ _by_blades = jax.jit(blade_influence, static_argnames="n_blades")
 def nodes_of(propeller: Propeller) -> jax.Array:
     """Corner points of its lattice."""
     stations = propeller.r_over_R
-    span = span_interpolation(stations, lattice_span(stations[0], 24))
+    span = lattice_interpolation(stations, 24)
     return lattice_nodes(Blade.from_propeller(propeller), span, 8)
 
 

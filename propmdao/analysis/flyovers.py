@@ -16,11 +16,11 @@ from propmdao.acoustics.sounds.changing_sound import absorbed_record, changing_n
 from propmdao.acoustics.sounds.recordings import SAMPLE_RATE
 from propmdao.acoustics.sources.flyover import flyover_histories
 from propmdao.acoustics.sources.rotors import Rotor, equally_spaced
-from propmdao.aerodynamics.lattice.strips import strip_radii
 from propmdao.analysis.flyover_results import STEP, Flight, Flyover
 from propmdao.analysis.results import Analysis
 from propmdao.analysis.self_noise import BANDS_HZ, strip_flow
-from propmdao.geometry.blade import Blade, span_interpolation
+from propmdao.geometry.blade import Blade
+from propmdao.geometry.lattice import strip_interpolation
 from propmdao.geometry.meshes import propeller_surface
 from propmdao.geometry.surface import surface_panels
 from propmdao.propeller.description import Propeller
@@ -158,7 +158,7 @@ def _flow(analysis: Analysis, propeller: Propeller) -> StripFlow:
         states.relative_speed,
         states.lift_coefficient,
         Blade.from_propeller(propeller),
-        span_interpolation(stations, strip_radii(stations[0], n_spanwise)),
+        strip_interpolation(stations, n_spanwise),
     )
 
 

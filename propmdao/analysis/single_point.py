@@ -14,11 +14,11 @@ from propmdao.acoustics.kinematics.limits import require_outside_rotor, require_
 from propmdao.acoustics.propagation.paths import bands_by_paths, sound_paths, tones_by_paths
 from propmdao.acoustics.sources.formulation1a import tones
 from propmdao.aerodynamics.coefficients import coefficients
-from propmdao.aerodynamics.lattice.strips import strip_radii
 from propmdao.aerodynamics.rotor_geometry import RotorGeometry
 from propmdao.aerodynamics.sections.laws import viscous_sections
 from propmdao.aerodynamics.sections.polars.family import SectionPolars, warn_outside_sections
 from propmdao.aerodynamics.sections.polars.propeller_polars import polars_for
+from propmdao.aerodynamics.sections.polars.sources import polar_sources
 from propmdao.aerodynamics.sections.polars.table import warn_outside
 from propmdao.aerodynamics.solutions import axial
 from propmdao.aerodynamics.solutions.case import RotorCase
@@ -28,9 +28,8 @@ from propmdao.aerodynamics.wakes.helical import wake_transport
 from propmdao.analysis.request import Asked, Request
 from propmdao.analysis.results import Analysis
 from propmdao.analysis.self_noise import BANDS_HZ, self_noise, strip_flow
-from propmdao.geometry.blade import Blade, span_interpolation
+from propmdao.geometry.blade import Blade
 from propmdao.geometry.meshes import MeshRadii, blade_meshes, mesh_radii
-from propmdao.geometry.surface import surface_panels
 from propmdao.propeller.changes import Change
 from propmdao.propeller.description import Propeller
 from propmdao.records.listening import Listening, Surroundings
@@ -99,11 +98,15 @@ def analyze(
     stations = changed.r_over_R
     radii = mesh_radii(stations, fidelity.n_spanwise, fidelity.n_surface_span)
     nodes, panels = _meshes(blade, radii, fidelity.n_chordwise, fidelity.n_contour)
-    section_radii = span_interpolation(stations, strip_radii(stations[0], fidelity.n_spanwise))
-    sections = None
+    sections, sources = None, {}
     if model.loads.viscous:
-        polars = polars or polars_for(changed, transition=model.loads.transition)
-        sections = viscous_sections(polars, blade, section_radii, float(model.loads.stall_delay))
+        transition = model.loads.transition
+        if polars is None:
+            sources = polar_sources(changed, transition=transition)
+            polars = polars_for(changed, transition=transition)
+        else:
+            sources = dict.fromkeys((name for _, name in changed.airfoils), "given")
+        sections = viscous_sections(polars, blade, radii.strips, float(model.loads.stall_delay))
     case = RotorCase(
         RotorGeometry(nodes, radius, int(changed.n_blades)),
         point.at(0.0),
@@ -123,7 +126,7 @@ def analyze(
     if model.noise.broadband is not None:
         states = loads.sections
         flow = strip_flow(
-            loads.strips, states.relative_speed, states.lift_coefficient, blade, section_radii
+            loads.strips, states.relative_speed, states.lift_coefficient, blade, radii.strips
         )
         noise = self_noise(flow, case.rotor.n_blades, state, points, model.noise.broadband)
         noise = _noise_by_paths(noise, paths, state, listening.surroundings)
@@ -135,6 +138,7 @@ def analyze(
         coefficients=coefficients(loads.thrust, loads.torque, state, changed.diameter),
         tones=tones_by_paths(sound, paths, state, listening.surroundings),
         broadband=noise,
+        polars=sources,
     )
 
 
@@ -155,8 +159,8 @@ def _meshes(
     blade: Blade, radii: MeshRadii, n_chordwise: int, n_contour: int
 ) -> tuple[Array, Panels]:
     """Lattice and closed surface of a blade."""
-    nodes, surface = blade_meshes(blade, radii, n_chordwise, n_contour)
-    return nodes, surface_panels(surface)
+    meshes = blade_meshes(blade, radii, n_chordwise, n_contour)
+    return meshes.lattice, meshes.panels
 
 
 def _noise_by_paths(

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import argparse
-from collections.abc import Sequence
+import dataclasses
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -139,6 +140,7 @@ def _analyze(options: argparse.Namespace) -> None:
     for point in points:
         Request.of({"listening": listening}, **{k: v for k, v in point.items() if k in ASKED})
     from propmdao.aerodynamics.sections.polars.propeller_polars import polars_for
+    from propmdao.aerodynamics.sections.polars.sources import polar_sources
     from propmdao.analysis.single_point import analyze
     from propmdao.formats.propellers import load_propeller
 
@@ -146,7 +148,7 @@ def _analyze(options: argparse.Namespace) -> None:
     own = _own_polars(options.polar)
     names = [name for _, name in propeller.airfoils]
     for airfoil in own:
-        if airfoil not in [*names, *(Path(name).stem for name in names)]:
+        if not any(_key(name, [airfoil]) for name in names):
             raise ValueError(
                 f"--polar {airfoil}: {propeller.name} has no such airfoil; it has"
                 f" {', '.join(dict.fromkeys(names))}"
@@ -154,6 +156,11 @@ def _analyze(options: argparse.Namespace) -> None:
     with warning_lines("analyze"):
         polars = polars_for(propeller, own) if options.viscous else None
         analyses = [analyze(propeller, polars=polars, **point) for point in points]
+    if polars is not None:
+        files = {airfoil: ", ".join(names) for airfoil, *names in options.polar}
+        sources = polar_sources(propeller, own)
+        sources |= {name: files[key] for name in sources if (key := _key(name, files))}
+        analyses = [dataclasses.replace(analysis, polars=sources) for analysis in analyses]
     results = [analysis.to_dict() for analysis in analyses]
     results[0] |= _write(options, analyses[0])
     if options.json:
@@ -162,6 +169,11 @@ def _analyze(options: argparse.Namespace) -> None:
         from propmdao.commands import report
 
         report.print_analyses(results)
+
+
+def _key(airfoil: str, given: Iterable[str]) -> str | None:
+    """Key of what is given for an airfoil: its name, or its file's without folder and ending."""
+    return next((key for key in given if key in (airfoil, Path(airfoil).stem)), None)
 
 
 def _check(options: argparse.Namespace) -> None:

@@ -5,8 +5,8 @@ import pytest
 from propmdao.aerodynamics.rotor_geometry import RotorGeometry
 from propmdao.aerodynamics.solutions.case import RotorCase
 from propmdao.formats.propellers import load_propeller
-from propmdao.geometry.blade import Blade, span_interpolation
-from propmdao.geometry.lattice import lattice_nodes, lattice_span
+from propmdao.geometry.blade import Blade
+from propmdao.geometry.lattice import lattice_interpolation, lattice_nodes
 from propmdao.records.air import Air
 from propmdao.records.states import RotorState
 
@@ -25,7 +25,7 @@ class SlowFlyer:
 
     def nodes(self, n_chordwise: int = 4, n_spanwise: int = 10):
         """Lattice of the blade, coarse by default so that the tests are quick."""
-        span = span_interpolation(self.stations, lattice_span(self.stations[0], n_spanwise))
+        span = lattice_interpolation(self.stations, n_spanwise)
         return lattice_nodes(self.blade, span, n_chordwise)
 
     def case(self, rotation_speed=440.0, speed=8.0, density=1.225, n_blades=2, nodes=None):

@@ -10,20 +10,18 @@ from numpy.testing import assert_allclose
 
 from propmdao.acoustics.broadband.self_noise import SelfNoise
 from propmdao.acoustics.levels.weighting import a_weighting
-from propmdao.aerodynamics.lattice.strips import strip_radii
 from propmdao.analysis.self_noise import BANDS_HZ, strip_flow
 from propmdao.analysis.single_point import analyze
 from propmdao.formats.propellers import load_propeller
-from propmdao.geometry.blade import Blade, span_interpolation
+from propmdao.geometry.blade import Blade
+from propmdao.geometry.lattice import strip_interpolation
 from propmdao.geometry.trailing_edge import trailing_edge
 from propmdao.records.fidelity import Fidelity
 
 PROPELLER = load_propeller("apcsf_11x4.7")
 COARSE = Fidelity(n_chordwise=3, n_spanwise=10, n_contour=21, n_surface_span=12, n_harmonics=4)
 OBSERVERS = [(1.905, -45.0), (3.81, -45.0)]
-RADII = span_interpolation(
-    PROPELLER.r_over_R, strip_radii(PROPELLER.r_over_R[0], COARSE.n_spanwise)
-)
+RADII = strip_interpolation(PROPELLER.r_over_R, COARSE.n_spanwise)
 MECHANISMS = [field.name for field in dataclasses.fields(SelfNoise)]
 BLADE = Blade.from_propeller(PROPELLER)
 

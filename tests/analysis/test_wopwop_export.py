@@ -18,8 +18,12 @@ from propmdao.commands.wopwop_command import levels
 from propmdao.formats.propellers import load_propeller
 from propmdao.formats.wopwop.geometry_file import read_geometry
 from propmdao.formats.wopwop.sources import thickness_sources
-from propmdao.geometry.blade import Blade, span_interpolation
-from propmdao.geometry.surface import surface_nodes, surface_panels, surface_span
+from propmdao.geometry.blade import Blade
+from propmdao.geometry.surface import (
+    surface_interpolation,
+    surface_nodes,
+    surface_panels,
+)
 from propmdao.propeller.description import Propeller
 from propmdao.records.fidelity import Fidelity
 from propmdao.records.loads import PointLoads
@@ -72,7 +76,7 @@ def test_levels_of_the_case_are_those_of_the_tones(tmp_path: Path, loads: PointL
 
 def panels(propeller: Propeller) -> Panels:
     stations = propeller.r_over_R
-    span = span_interpolation(stations, surface_span(stations[0], COARSE.n_surface_span))
+    span = surface_interpolation(stations, COARSE.n_surface_span)
     return surface_panels(surface_nodes(Blade.from_propeller(propeller), span, COARSE.n_contour))
 
 

@@ -5,11 +5,11 @@ import openmdao.api as om
 import pytest
 from numpy.testing import assert_allclose
 
-from propmdao.aerodynamics.lattice.strips import strip_radii
 from propmdao.aerodynamics.sections.laws import viscous_sections
 from propmdao.aerodynamics.solutions.axial import solve_steady
 from propmdao.components import AerodynamicsComp, RotationSpeedComp, TrimmedAerodynamicsComp
-from propmdao.geometry.blade import Blade, span_interpolation
+from propmdao.geometry.blade import Blade
+from propmdao.geometry.lattice import strip_interpolation
 
 DIAMETER = 0.2794
 STEPS = {"lattice_nodes": 1e-6, "diameter": 1e-5, "speed": 1e-3, "density": 1e-4}
@@ -73,7 +73,7 @@ def viscous(meshes, problem, rotor, polars):
 
 def test_viscous_values_are_those_of_the_steady_lattice(viscous, nodes, propeller, polars):
     prob = viscous(8.0)
-    middle = span_interpolation(propeller.r_over_R, strip_radii(propeller.r_over_R[0], 4))
+    middle = strip_interpolation(propeller.r_over_R, 4)
     sections = viscous_sections(polars, Blade.from_propeller(propeller), middle, 340.294)
     solution = solve_steady(nodes, 2, DIAMETER / 2, 4200.0 * np.pi / 30.0, 8.0, 1.225, sections)
     for name, value in (

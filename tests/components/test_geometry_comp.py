@@ -9,12 +9,15 @@ import pytest
 from numpy.testing import assert_allclose
 from openmdao.utils.assert_utils import assert_check_partials
 
-from propmdao.aerodynamics.lattice.strips import strip_radii
 from propmdao.aerodynamics.sections.polars.family import blade_tables
 from propmdao.components import GeometryComp
-from propmdao.geometry.blade import Blade, span_interpolation
-from propmdao.geometry.lattice import lattice_nodes, lattice_span
-from propmdao.geometry.surface import surface_nodes, surface_span
+from propmdao.geometry.blade import Blade
+from propmdao.geometry.lattice import (
+    lattice_interpolation,
+    lattice_nodes,
+    strip_interpolation,
+)
+from propmdao.geometry.surface import surface_interpolation, surface_nodes
 
 
 @pytest.fixture
@@ -26,9 +29,9 @@ def problem(small, problem_of):
 def test_initial_values_give_the_meshes_of_the_propeller(problem, propeller):
     prob = problem(propeller=propeller)  # not run: solvers start from what it holds
     blade, stations = Blade.from_propeller(propeller), propeller.r_over_R
-    at = span_interpolation(stations, lattice_span(stations[0], 4))
+    at = lattice_interpolation(stations, 4)
     assert_allclose(prob.get_val("lattice_nodes"), lattice_nodes(blade, at, 2), atol=1e-15)
-    at = span_interpolation(stations, surface_span(stations[0], 4))
+    at = surface_interpolation(stations, 4)
     assert_allclose(prob.get_val("surface_nodes"), surface_nodes(blade, at, 5), atol=1e-15)
     assert_allclose(prob.get_val("beta", units="deg"), propeller.beta_deg)
 
@@ -44,7 +47,7 @@ def test_partials(problem, propeller, camber):
 
 def test_polars_of_the_sections_are_those_of_the_blade(meshes, propeller, polars):
     stations = propeller.r_over_R
-    middle = span_interpolation(stations, strip_radii(stations[0], 4))
+    middle = strip_interpolation(stations, 4)
     table = blade_tables(polars, Blade.from_propeller(propeller), middle)
     assert_allclose(meshes.get_val("section_polars"), table.values, atol=1e-14)
 
@@ -86,7 +89,7 @@ def test_blade_angle_can_be_set_in_degrees(problem, propeller):
     blade = Blade.from_propeller(propeller)
     blade = dataclasses.replace(blade, beta=jnp.radians(propeller.beta_deg + 2.0))
     stations = propeller.r_over_R
-    at = span_interpolation(stations, lattice_span(stations[0], 4))
+    at = lattice_interpolation(stations, 4)
     assert_allclose(prob.get_val("lattice_nodes"), lattice_nodes(blade, at, 2), atol=1e-12)
 
 

@@ -10,14 +10,18 @@ import pytest
 
 from propmdao.formats.propellers import load_propeller
 from propmdao.formats.stl import rotor_triangles, write_stl
-from propmdao.geometry.blade import Blade, span_interpolation
-from propmdao.geometry.surface import surface_nodes, surface_panels, surface_span
+from propmdao.geometry.blade import Blade
+from propmdao.geometry.surface import (
+    surface_interpolation,
+    surface_nodes,
+    surface_panels,
+)
 
 
 def skin(name: str, n_contour: int = 21, n_span: int = 12) -> np.ndarray:
     propeller = load_propeller(name)
     stations = propeller.r_over_R
-    span = span_interpolation(stations, surface_span(stations[0], n_span))
+    span = surface_interpolation(stations, n_span)
     return np.array(surface_nodes(Blade.from_propeller(propeller), span, n_contour))
 
 

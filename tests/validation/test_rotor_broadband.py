@@ -17,12 +17,12 @@ from propmdao.acoustics.broadband.rotor import rotor_self_noise
 from propmdao.acoustics.broadband.self_noise import third_octave_centers
 from propmdao.acoustics.kinematics.observers import arc
 from propmdao.acoustics.levels.decibels import level_db
-from propmdao.aerodynamics.lattice.strips import strip_radii
 from propmdao.aerodynamics.sections.laws import AIR_VISCOSITY
 from propmdao.analysis.self_noise import BANDS_HZ, strip_flow
 from propmdao.analysis.single_point import SOUND_SPEED, analyze
 from propmdao.formats.propellers import load_propeller
-from propmdao.geometry.blade import Blade, span_interpolation
+from propmdao.geometry.blade import Blade
+from propmdao.geometry.lattice import strip_interpolation
 from propmdao.records.fidelity import Fidelity
 
 DENSITY, RPM, DISTANCE = 1.18, 4200.0, 1.905
@@ -40,8 +40,7 @@ def hover():
 @pytest.fixture(scope="module")
 def strips(hover):
     propeller = load_propeller("apcsf_11x4.7")
-    radii = strip_radii(propeller.r_over_R[0], Fidelity().n_spanwise)
-    section_radii = span_interpolation(propeller.r_over_R, radii)
+    section_radii = strip_interpolation(propeller.r_over_R, Fidelity().n_spanwise)
     steady, states = hover.steady, hover.steady.sections
     flow = steady.strips, states.relative_speed, states.lift_coefficient
     return strip_flow(*flow, Blade.from_propeller(propeller), section_radii)

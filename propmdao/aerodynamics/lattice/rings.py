@@ -14,7 +14,7 @@ from jax import Array
 from scipy.interpolate import CubicSpline
 
 from propmdao.aerodynamics.vortices.biot_savart import filament_velocities, segment_velocities
-from propmdao.geometry.lattice import lattice_chord_fraction
+from propmdao.geometry.lattice import lattice_chord_fraction, strip_middle
 from propmdao.records.pytrees import Scalar, record
 
 # Bound vortices need no physical core; this one only keeps a segment's velocity on itself at zero.
@@ -90,29 +90,6 @@ def vortex_rings(nodes: Array) -> Rings:
 def _along(operator: Array, nodes: Array) -> Array:
     """Apply a chordwise operator to the nodes."""
     return jnp.tensordot(operator, nodes, axes=1)
-
-
-def strip_middle(n_spanwise: int) -> np.ndarray:
-    """Where the collocation and force points lie in each strip, as a fraction root to tip.
-
-    At the middle of the cosine angle, not of the strip: the points at which Glauert's integral is
-    exact for the trailing vortices of cosine-spaced strips (Lan, J. Aircraft 11, 1974). The middle
-    of the strip needs 48 strips where this needs 12.
-
-    Parameters
-    ----------
-    n_spanwise : int
-        Number of strips, cosine spaced toward root and tip.
-
-    Returns
-    -------
-    (n_spanwise,) array
-        Fractions between 0 and 1.
-    """
-    angle = np.linspace(0.0, np.pi, 2 * n_spanwise + 1)
-    x = 0.5 * (1.0 - np.cos(angle))
-    edge, middle = x[::2], x[1::2]
-    return (middle - edge[:-1]) / np.diff(edge)
 
 
 def bound_segments(rings: Rings) -> tuple[Array, Array]:

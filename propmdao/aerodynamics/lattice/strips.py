@@ -6,8 +6,8 @@ import jax.numpy as jnp
 import numpy as np
 from jax import Array
 
-from propmdao.aerodynamics.lattice.rings import Rings, strip_middle
-from propmdao.geometry.lattice import lattice_chord_fraction, lattice_span
+from propmdao.aerodynamics.lattice.rings import Rings
+from propmdao.geometry.lattice import lattice_chord_fraction, strip_middle
 from propmdao.records.pytrees import Scalar, record
 
 
@@ -83,26 +83,6 @@ def blade_strips(nodes: Array, rings: Rings, tip_radius: Scalar) -> Strips:
         upward=upward,
         zero_lift_angle=jnp.asarray(_zero_lift_weights(nc)) @ slope,
     )
-
-
-def strip_radii(root_r_over_R: float, n_spanwise: int) -> np.ndarray:
-    """Radii of the sections of an unswept blade, where their polars belong.
-
-    Parameters
-    ----------
-    root_r_over_R : float
-        Where the blade begins.
-    n_spanwise : int
-        Number of strips.
-
-    Returns
-    -------
-    (n_spanwise,) array
-        r/R in the middle of the strips, as the collocation points.
-    """
-    edge, f = lattice_span(root_r_over_R, n_spanwise), strip_middle(n_spanwise)
-    middle: np.ndarray = (1.0 - f) * edge[:-1] + f * edge[1:]
-    return middle
 
 
 def _zero_lift_weights(n_chordwise: int) -> np.ndarray:

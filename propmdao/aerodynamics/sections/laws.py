@@ -58,7 +58,8 @@ def viscous_sections(
     blade : Blade
         Its blade, modified or not.
     section_radii : SpanInterpolation
-        From the blade's stations to `propmdao.aerodynamics.lattice.strips.strip_radii`.
+        Interpolation from the blade's stations to the middle of the strips,
+        `geometry.lattice.strip_interpolation`.
     stall_delay : float
         1 where rotation delays stalls, 0 for polars as in two dimensions.
 

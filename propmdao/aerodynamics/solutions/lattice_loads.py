@@ -17,7 +17,6 @@ from propmdao.aerodynamics.lattice.rings import (
     bound_segments,
     chordwise_segments,
     segment_circulation,
-    strip_middle,
     vortex_rings,
     wake_influence,
 )
@@ -30,6 +29,7 @@ from propmdao.aerodynamics.sections.recambering import (
     section_states,
     solve_recambering,
 )
+from propmdao.geometry.lattice import strip_middle
 from propmdao.records.air import Air
 from propmdao.records.pytrees import Scalar, record
 from propmdao.records.states import RotorState

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 from propmdao.aerodynamics.lattice.rings import vortex_rings
-from propmdao.aerodynamics.lattice.strips import blade_strips, strip_radii
-from propmdao.geometry.blade import Blade, span_interpolation
-from propmdao.geometry.lattice import lattice_nodes, lattice_span
+from propmdao.aerodynamics.lattice.strips import blade_strips
+from propmdao.geometry.blade import Blade
+from propmdao.geometry.lattice import lattice_interpolation, lattice_nodes, strip_radii
 from propmdao.propeller.description import Propeller
 
 R = np.array([0.2, 0.6, 1.0])
@@ -14,7 +14,7 @@ R = np.array([0.2, 0.6, 1.0])
 
 def strips_of(airfoil, beta_deg=(30.0, 20.0, 12.0), n=16):
     propeller = Propeller("x", 0.3, 2, R, [0.2, 0.2, 0.1], list(beta_deg), [(0.2, airfoil)])
-    span = span_interpolation(R, lattice_span(0.2, n))
+    span = lattice_interpolation(R, n)
     nodes = lattice_nodes(Blade.from_propeller(propeller), span, 8)
     return blade_strips(nodes, vortex_rings(nodes), 0.15)
 

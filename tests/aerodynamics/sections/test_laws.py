@@ -5,12 +5,16 @@ import numpy as np
 import pytest
 
 from propmdao.aerodynamics.lattice.rings import vortex_rings
-from propmdao.aerodynamics.lattice.strips import blade_strips, strip_radii
+from propmdao.aerodynamics.lattice.strips import blade_strips
 from propmdao.aerodynamics.sections.laws import section_laws, viscous_sections
 from propmdao.aerodynamics.sections.polars.propeller_polars import polars_for
 from propmdao.formats.propellers import load_propeller
-from propmdao.geometry.blade import Blade, span_interpolation
-from propmdao.geometry.lattice import lattice_nodes, lattice_span
+from propmdao.geometry.blade import Blade
+from propmdao.geometry.lattice import (
+    lattice_interpolation,
+    lattice_nodes,
+    strip_interpolation,
+)
 from propmdao.records.air import Air
 
 NC, NS, OMEGA = 4, 10, 440.0
@@ -19,8 +23,8 @@ NC, NS, OMEGA = 4, 10, 440.0
 def laws(name, delay):
     propeller = load_propeller(name)
     stations, blade = propeller.r_over_R, Blade.from_propeller(propeller)
-    nodes = lattice_nodes(blade, span_interpolation(stations, lattice_span(stations[0], NS)), NC)
-    at = span_interpolation(stations, strip_radii(stations[0], NS))
+    nodes = lattice_nodes(blade, lattice_interpolation(stations, NS), NC)
+    at = strip_interpolation(stations, NS)
     sections = viscous_sections(polars_for(propeller), blade, at, delay)
     strips = blade_strips(nodes, vortex_rings(nodes), 0.5 * propeller.diameter)
     air = Air(density=1.2, sound_speed=340.0)

@@ -7,7 +7,6 @@ import jax.numpy as jnp
 import numpy as np
 import pytest
 
-from propmdao.aerodynamics.lattice.strips import strip_radii
 from propmdao.aerodynamics.rotor_geometry import RotorGeometry
 from propmdao.aerodynamics.sections.laws import ViscousSections
 from propmdao.aerodynamics.sections.polars.family import blade_tables
@@ -21,8 +20,12 @@ from propmdao.aerodynamics.solutions import axial
 from propmdao.aerodynamics.solutions.case import RotorCase
 from propmdao.aerodynamics.solutions.result import failure
 from propmdao.formats.propellers import load_propeller
-from propmdao.geometry.blade import Blade, span_interpolation
-from propmdao.geometry.lattice import lattice_nodes, lattice_span
+from propmdao.geometry.blade import Blade
+from propmdao.geometry.lattice import (
+    lattice_interpolation,
+    lattice_nodes,
+    strip_interpolation,
+)
 from propmdao.records.air import Air
 from propmdao.records.states import RotorState
 from propmdao.records.units import RAD_PER_S
@@ -40,9 +43,9 @@ class Rotor:
         propeller = dataclasses.replace(propeller, beta_deg=propeller.beta_deg + offset_deg)
         stations, blade = propeller.r_over_R, Blade.from_propeller(propeller)
         self.radius = 0.5 * propeller.diameter
-        span = span_interpolation(stations, lattice_span(stations[0], NS))
+        span = lattice_interpolation(stations, NS)
         self.nodes = lattice_nodes(blade, span, NC)
-        at = span_interpolation(stations, strip_radii(stations[0], NS))
+        at = strip_interpolation(stations, NS)
         self.table = blade_tables(polars_for(propeller), blade, at)
 
     def case(self, rotation_speed, speed, sections=None, air=AIR):

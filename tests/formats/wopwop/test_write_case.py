@@ -22,8 +22,12 @@ from propmdao.formats.wopwop.geometry_file import read_geometry
 from propmdao.formats.wopwop.loading_file import read_loading
 from propmdao.formats.wopwop.sources import loading_sources, thickness_sources
 from propmdao.formats.wopwop.write_case import write_case
-from propmdao.geometry.blade import Blade, span_interpolation
-from propmdao.geometry.surface import surface_nodes, surface_panels, surface_span
+from propmdao.geometry.blade import Blade
+from propmdao.geometry.surface import (
+    surface_interpolation,
+    surface_nodes,
+    surface_panels,
+)
 from propmdao.records.loads import PointLoads
 
 RHO, C, OMEGA = 1.2, 340.0, 1200.0
@@ -32,7 +36,7 @@ RHO, C, OMEGA = 1.2, 340.0, 1200.0
 @pytest.fixture(scope="module")
 def nodes():
     propeller = load_propeller("apcsf_11x4.7")
-    span = span_interpolation(propeller.r_over_R, surface_span(propeller.r_over_R[0], 8))
+    span = surface_interpolation(propeller.r_over_R, 8)
     return np.asarray(surface_nodes(Blade.from_propeller(propeller), span, 11))
 
 
