@@ -10,13 +10,9 @@ import pytest
 from propmdao.acoustics.kinematics.observers import arc
 from propmdao.acoustics.sources.formulation1a import tones
 from propmdao.formats.propellers import load_propeller
-from propmdao.geometry.blade import Blade
-from propmdao.geometry.lattice import lattice_interpolation, lattice_nodes
-from propmdao.geometry.surface import (
-    surface_interpolation,
-    surface_nodes,
-    surface_panels,
-)
+from propmdao.geometry.blade import Blade, span_interpolation
+from propmdao.geometry.lattice import lattice_nodes, lattice_span
+from propmdao.geometry.surface import surface_nodes, surface_panels, surface_span
 from propmdao.records.loads import PointLoads
 
 
@@ -26,8 +22,8 @@ def case(request):
     propeller = load_propeller("apcsf_11x4.7")
     blade = Blade.from_propeller(propeller)
     root = propeller.r_over_R[0]
-    surface = surface_interpolation(propeller.r_over_R, 80)
-    lattice = lattice_interpolation(propeller.r_over_R, 24)
+    surface = span_interpolation(propeller.r_over_R, surface_span(root, 80))
+    lattice = span_interpolation(propeller.r_over_R, lattice_span(root, 24))
     position = lattice_nodes(blade, lattice, 8).reshape(-1, 3)
     loads = PointLoads(position, jnp.ones_like(position))
     elevation_deg = [-45.0] if request.param == 1 else np.linspace(-45.0, 45.0, request.param)

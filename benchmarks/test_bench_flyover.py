@@ -37,8 +37,7 @@ def _main(method: str, seconds: float) -> None:
     import jax.numpy as jnp
     import numpy as np
 
-    from propmdao.geometry.surface import surface_interpolation
-from propmdao.acoustics.kinematics.motion import translation
+    from propmdao.acoustics.kinematics.motion import translation
     from propmdao.acoustics.kinematics.reception import Observers
     from propmdao.acoustics.sources.flyover import flyover_histories
     from propmdao.acoustics.sources.rotors import Rotor, equally_spaced, rotor_histories
@@ -48,7 +47,7 @@ from propmdao.acoustics.kinematics.motion import translation
     from propmdao.geometry.surface import surface_nodes, surface_panels, surface_span
 
     propeller = load_propeller("apcsf_11x4.7")
-    span = surface_interpolation(propeller.r_over_R, 80)
+    span = span_interpolation(propeller.r_over_R, surface_span(propeller.r_over_R[0], 80))
     panels = surface_panels(surface_nodes(Blade.from_propeller(propeller), span, 65))
     loads = analyze(propeller, rpm=RPM, speed=SPEED).steady.point_loads
     rotor = Rotor(equally_spaced(propeller.n_blades), RPM * np.pi / 30, panels, loads)

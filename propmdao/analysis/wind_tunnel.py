@@ -13,7 +13,6 @@ import numpy.typing as npt
 from scipy.optimize import root_scalar
 
 from propmdao.analysis.single_point import analyze
-from propmdao.formats.text import read_text
 from propmdao.propeller.description import Propeller
 from propmdao.runtime.input_files import read_text
 
