@@ -49,7 +49,7 @@ def _main(method: str, seconds: float) -> None:
     propeller = load_propeller("apcsf_11x4.7")
     span = span_interpolation(propeller.r_over_R, surface_span(propeller.r_over_R[0], 80))
     panels = surface_panels(surface_nodes(Blade.from_propeller(propeller), span, 65))
-    loads = analyze(propeller, rpm=RPM, speed=SPEED).steady.point_loads
+    loads = analyze(propeller, rpm=RPM, speed=SPEED).loads.point_loads
     rotor = Rotor(equally_spaced(propeller.n_blades), RPM * np.pi / 30, panels, loads)
     flight = (translation((0, 0, -15 * SPEED), velocity=(0, 0, SPEED)),)
     microphone = Observers(jnp.array([[MISS, 0.0, 0.0]]), jnp.zeros(3))

@@ -19,6 +19,7 @@ from pathlib import Path
 
 import numpy as np
 
+from propmdao.acoustics.kinematics.observers import arc
 from propmdao.aerodynamics.sections.laws import viscous_sections
 from propmdao.aerodynamics.sections.polars.propeller_polars import polars_for
 from propmdao.aerodynamics.solutions.axial import WAKE_AGES, solve_steady
@@ -228,7 +229,7 @@ def design_point() -> Rows:
     }.items():
         for flow, viscous in (("viscous", True), ("inviscid", False)):
             result = analyze(
-                propeller, rpm=4200.0, speed=8.0, viscous=viscous, observers=[(1.905, -45.0)]
+                propeller, rpm=4200.0, speed=8.0, viscous=viscous, observers=arc(1.905, [-45.0])
             ).to_dict()
             thickness = result["observers"][0]["harmonics"][0]["spl_thickness_db"]
             rows.append(

@@ -21,6 +21,7 @@ import numpy as np
 from rich.console import Console
 from rich.table import Table
 
+from propmdao.acoustics.kinematics.observers import arc
 from propmdao.acoustics.levels.decibels import energy_sum_db, level_db, spl_db
 from propmdao.acoustics.sounds.recordings import (
     SAMPLE_RATE,
@@ -189,7 +190,7 @@ def two_blades(thrust: float, distance: float, output: Path) -> dict[str, dict[s
     blades, found = {}, {}
     for name in (PROPELLER, OTHER):
         analysis = analyze(load_propeller(name), thrust=thrust, density=DENSITY, broadband=True,
-                           observers=[(distance, MICROPHONE)])  # fmt: skip
+                           observers=arc(distance, [MICROPHONE]))  # fmt: skip
         found[name] = analysis
         blades[f"{name}, {analysis.rpm:.0f} rpm"] = records(analysis_sound(analysis), 0)
     full = common_full_scale(*(sound["with broadband noise"] for sound in blades.values()))
@@ -276,7 +277,7 @@ def main() -> None:
     Console(highlight=False).print(table)
     print(*verdicts(tones, bands), sep="\n")
     draw(computed, bands, test, output)
-    blades = two_blades(float(computed[RPM].analysis.steady.thrust), test["radius"], output)
+    blades = two_blades(float(computed[RPM].analysis.loads.thrust), test["radius"], output)
     turns = {name: sampled(sound, SAMPLE_RATE, 60.0 / RPM) for name, sound in blades.items()}
     pressure(turns).savefig(output / "pressure.png")
     print(f"Tables, figures and sound: {output}")

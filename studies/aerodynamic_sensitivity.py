@@ -10,31 +10,14 @@ Nothing here is fitted, and nothing of it is in the catalogue.
 import argparse
 import dataclasses
 from collections.abc import Iterator
-from functools import lru_cache, partial
+from functools import partial
 from pathlib import Path
 from typing import Any
 
-import jax
-import jax.numpy as jnp
 import numpy as np
 from aerodynamic_validation import measurements, show, write_csv
-from scipy.optimize import brentq
 
-from propmdao.aerodynamics.coefficients import coefficients
-from propmdao.aerodynamics.sections.laws import viscous_sections
 from propmdao.aerodynamics.sections.polars import neuralfoil_tables
-from propmdao.aerodynamics.sections.polars.family import SectionPolars, shape_values
-from propmdao.aerodynamics.sections.polars.propeller_polars import polars_for
-from propmdao.aerodynamics.sections.polars.shipped import limits, shape, shipped_tables
-from propmdao.aerodynamics.solutions.axial import WAKE_AGES, Flow, induced_velocity
-from propmdao.aerodynamics.solutions.lattice_loads import (
-    LatticeLoads,
-    lattice_geometry,
-    loads_with_wake,
-)
-from propmdao.aerodynamics.vortices.cores import core_radius
-from propmdao.aerodynamics.wakes.helical import helical_wake
-from propmdao.analysis.single_point import SOUND_SPEED
 from propmdao.analysis.wind_tunnel import (
     Evaluate,
     Points,
@@ -45,20 +28,12 @@ from propmdao.analysis.wind_tunnel import (
 )
 from propmdao.figures import comparisons
 from propmdao.formats.propellers import load_propeller
-from propmdao.geometry.blade import Blade
-from propmdao.geometry.lattice import (
-    lattice_interpolation,
-    lattice_nodes,
-    strip_interpolation,
-)
 from propmdao.propeller.description import Propeller
+from propmdao.records.wake_law import WakeLaw
 
 PITCH = {"apcsf_11x4.7": 0.11938, "apce_10x7": 0.1778}  # m, the maker's: 4.7 and 7 in
 OUTBOARD = 0.55  # r/R from which the maker's table of the sister 10x7SF has its nominal pitch
-DENSITY, AIR_VISCOSITY = 1.225, 1.46e-5  # kg/m3, m2/s
 N_CRIT = (1.0, 9.0)  # beside the catalogue's 5: dirty and clean air
-# Cambers and thicknesses of sections at another n_crit, enough for these two blades.
-CAMBER, THICKNESS = np.array([0.0, 0.03, 0.045, 0.06]), np.array([0.03, 0.045, 0.09, 0.155])
 FORMATS = {"changed": "", "static CT": "+.1f", "static CP": "+.1f", "CT to J 0.5": "+.1f",
            "CP to J 0.5": "+.1f", "trend": ".2f", "twist": "+.2f", "then CT": "+.1f",
            "then CP": "+.1f"}  # fmt: skip
@@ -89,75 +64,15 @@ def variants(propeller: Propeller, with_n_crit: bool) -> Iterator[tuple[str, Pro
         yield "sections of the thesis", load_propeller("apcsf_11x4.7_thesis"), computed
     yield "no stall delay", propeller, partial(computed, stall_delay=False)
     for n_crit in N_CRIT if with_n_crit else ():
-        yield (
-            f"n_crit {n_crit:g}",
-            propeller,
-            partial(computed, polars=polars_at(propeller, n_crit)),
-        )
-    for transport in (0.75, 1.5):
-        wake = partial(computed_with_wake, transport=transport)
-        yield f"drift of the wake x {transport:g}", propeller, wake
-
-
-def polars_at(propeller: Propeller, n_crit: float) -> SectionPolars:
-    """Polars of the propeller's sections for another critical amplification."""
-    polars, shipped = polars_for(propeller), shipped_tables().values
-    names = [
-        next(name for name, table in shipped.items() if np.array_equal(table, values))
-        for values in polars.values
-    ]
-    return dataclasses.replace(
-        polars,
-        camber=jnp.asarray(np.concatenate([-CAMBER[:0:-1], CAMBER])),
-        thickness=jnp.asarray(THICKNESS),
-        values=jnp.asarray(np.stack([_shape_at(name, n_crit) for name in names])),
-    )
-
-
-@lru_cache
-def _shape_at(name: str, n_crit: float) -> np.ndarray:
-    grid = neuralfoil_tables.neuralfoil_grid(*shape(name), CAMBER, THICKNESS, n_crit)
-    return shape_values(grid[0], *limits(*grid))
-
-
-@partial(jax.jit, static_argnames="n_blades")
-def _loads(flow: Flow, n_blades: int, w: float, transport: float) -> LatticeLoads:
-    """Loads in a wake that drifts and contracts as if w were transport times what it is."""
-    omega, ages = flow.rotation_speed, jnp.asarray(WAKE_AGES)
-    trailing = flow.lattice.rings.corner[-1]
-    wake = helical_wake(trailing, ages, n_blades, flow.radius, omega, flow.speed, transport * w)
-    core = core_radius(ages, omega, AIR_VISCOSITY, 1e-4 * flow.radius)
-    return loads_with_wake(
-        flow.lattice, wake, core, omega, flow.speed, w, flow.density, flow.sections
-    )
-
-
-def computed_with_wake(
-    propeller: Propeller, at: Points, twist_offset_deg: float, *, transport: float
-) -> Points:
-    """As `computed`, with the induced velocity in the wake times `transport`."""
-    propeller = dataclasses.replace(propeller, beta_deg=propeller.beta_deg + twist_offset_deg)
-    blade, stations = Blade.from_propeller(propeller), propeller.r_over_R
-    nodes = lattice_nodes(blade, lattice_interpolation(stations, 24), 8)
-    strips = strip_interpolation(stations, 24)
-    sections = viscous_sections(polars_for(propeller), blade, strips, SOUND_SPEED)
-    n, radius = propeller.n_blades, 0.5 * propeller.diameter
-    lattice, found = lattice_geometry(nodes, n, radius), []
-    for rpm, j in zip(at.rpm, at.J, strict=True):
-        omega, speed = rpm * np.pi / 30.0, j * rpm / 60.0 * propeller.diameter
-        flow = Flow(lattice, radius, omega, speed, DENSITY, sections)
-
-        def missing(w: float, flow: Flow = flow) -> float:
-            return float(induced_velocity(flow, n * _loads(flow, n, w, transport).thrust)) - w
-
-        tip_speed = omega * radius
-        w = brentq(missing, 1e-3 * tip_speed - 0.25 * speed, 0.3 * tip_speed, xtol=1e-6)
-        loads = _loads(flow, n, w, transport)
-        of = coefficients(
-            n * loads.thrust, n * loads.torque, omega, speed, DENSITY, propeller.diameter
-        )
-        found.append((float(of.CT), float(of.CP)))
-    return Points(at.rpm, at.J, *np.array(found).T)
+        yield f"n_crit {n_crit:g}", propeller, partial(computed, n_crit=n_crit)
+    law = WakeLaw()
+    for factor in (0.75, 1.5):
+        drift = {
+            name: factor * getattr(law, name)
+            for name in ("before_passage", "after_passage", "inside")
+        }
+        wake = dataclasses.replace(law, **drift)
+        yield f"drift of the wake x {factor:g}", propeller, partial(computed, wake=wake)
 
 
 def sensitivities(case: str, tunnel: WindTunnel, with_n_crit: bool) -> list[dict[str, Any]]:

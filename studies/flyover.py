@@ -16,7 +16,7 @@ from pathlib import Path
 import numpy as np
 
 from propmdao.acoustics.kinematics.motion import poses
-from propmdao.acoustics.kinematics.observers import directions, sphere
+from propmdao.acoustics.kinematics.observers import arc, directions, sphere
 from propmdao.acoustics.kinematics.tracks import flyover_track
 from propmdao.analysis.flyover_results import PARTS, STEP, Flight
 from propmdao.analysis.flyovers import fly_over
@@ -55,7 +55,7 @@ def main() -> None:
     output.mkdir(parents=True, exist_ok=True)
 
     found = analyze(PROPELLER, thrust=THRUST, speed=SPEED, density=DENSITY, broadband=True,
-                    observers=[(FLIGHT.height, angle) for angle in ARC])  # fmt: skip
+                    observers=arc(FLIGHT.height, ARC))  # fmt: skip
     heard = fly_over(PROPELLER, found, FLIGHT)
     tripped = fly_over(PROPELLER, found, FLIGHT, trip="heavy")
     levels = {part: heard.level_dba(part) for part in PARTS} | {TRIPPED: tripped.level_dba()}

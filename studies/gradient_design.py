@@ -24,6 +24,7 @@ import low_noise_design as thesis
 import numpy as np
 import openmdao.api as om
 
+from propmdao.acoustics.kinematics.observers import arc
 from propmdao.acoustics.levels.decibels import level_db, oaspl_db
 from propmdao.acoustics.levels.weighting import level_dba
 from propmdao.aerodynamics.sections.laws import AIR_VISCOSITY
@@ -73,7 +74,7 @@ def evaluate(propeller: Propeller) -> Analysis:
     elevations = [*free_form.MICROPHONES, *thesis.DIRECTIVITY]
     return analyze(
         propeller, thrust=thesis.THRUST, speed=thesis.SPEED, density=thesis.DENSITY,
-        observers=[(thesis.DISTANCE, at) for at in elevations], broadband=True,
+        observers=arc(thesis.DISTANCE, elevations), broadband=True,
         fidelity=thesis.FIDELITY,
     )  # fmt: skip
 
@@ -82,17 +83,17 @@ def column(propeller: Propeller, of: Analysis) -> dict[str, Cell]:
     """What the table shows of a blade."""
     heard, n = of.to_dict()["observers"], len(free_form.MICROPHONES)
     at, p = n + thesis.MICROPHONE_INDEX, free_form.EXPONENT
-    strips, pressure, noise = of.steady.strips, of.tones, of.broadband
+    strips, pressure, noise = of.loads.strips, of.tones, of.broadband
     assert noise is not None
     # As if the boundary layers were tripped; the tones are far below.
     turbulent = level_dba(BANDS_HZ, noise.total[:n] - noise.laminar_shedding[:n])
-    r, thrust = np.asarray(strips.r_over_R), np.asarray(of.steady.strip_thrust)
-    reynolds = of.density * of.steady.sections.relative_speed * strips.chord / AIR_VISCOSITY
+    r, thrust = np.asarray(strips.r_over_R), np.asarray(of.loads.strip_thrust)
+    reynolds = of.density * of.loads.sections.relative_speed * strips.chord / AIR_VISCOSITY
     radius = 0.5 * propeller.diameter
     return {
         "rpm": of.rpm,
-        "thrust": float(of.steady.thrust),
-        "torque": 1e3 * float(of.steady.torque),
+        "thrust": float(of.loads.thrust),
+        "torque": 1e3 * float(of.loads.torque),
         "tones": soft_maximum_db(oaspl_db(pressure.total[:n]), p),
         "thickness": soft_maximum_db(oaspl_db(pressure.thickness[:n]), p),
         "loading": soft_maximum_db(oaspl_db(pressure.loading[:n]), p),
@@ -173,7 +174,7 @@ def design(output: Path, evolution: int = 0) -> Results:
     analyses = {"APC-SF": evaluate(thesis.BASELINE)}
     searches, brought = {}, {}
     before = column(blades["APC-SF"], analyses["APC-SF"])
-    torque = float(analyses["APC-SF"].steady.torque)
+    torque = float(analyses["APC-SF"].loads.torque)
 
     prob = thesis.build_problem(torque)
     searches["thesis' problem"] = run_slsqp(prob, output / "thesis.sql")

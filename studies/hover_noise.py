@@ -82,7 +82,7 @@ def hover_tones() -> HoverTones:
                 twist_offset_deg=twist)
         for speed in rpm
     ]  # fmt: skip
-    loads = np.array([(of.steady.thrust, of.steady.torque) for of in found])
+    loads = np.array([(of.loads.thrust, of.loads.torque) for of in found])
     level = np.array([spl_db(of.tones.total[:, 0]) for of in found])
     scaled = [scaled_tone(of, *ratio) for of, ratio in zip(found, known / loads, strict=True)]
     return HoverTones(
@@ -112,8 +112,8 @@ def scaled_tone(found: Analysis, thrust: float, torque: float) -> np.ndarray:
     r, n = PROPELLER.r_over_R, Fidelity()
     radii = mesh_radii(r, n.n_spanwise, n.n_surface_span)
     _, surface = blade_meshes(Blade.from_propeller(PROPELLER), radii, n.n_chordwise, n.n_contour)
-    force = found.steady.point_loads.force * np.array([torque, torque, thrust])
-    loads = PointLoads(found.steady.point_loads.position, force)
+    force = found.loads.point_loads.force * np.array([torque, torque, thrust])
+    loads = PointLoads(found.loads.point_loads.position, force)
     heard = tones(
         surface_panels(surface), loads, PROPELLER.n_blades, found.rpm * np.pi / 30.0, 0.0, DENSITY,
         SOUND_SPEED, point(*found.observers.T), 1,

@@ -167,7 +167,7 @@ def main() -> None:
     output.mkdir(parents=True, exist_ok=True)
 
     baseline = evaluate(BASELINE, thrust=THRUST)
-    torque_limit = float(baseline.steady.torque)
+    torque_limit = float(baseline.loads.torque)
     prob = build_problem(torque_limit)
     optimise(prob, options.evaluations, options.seed, output)
     best = naca_blade("optimum", {name: prob.get_val(f"{name}_cp") for name in BOUNDS}, output)

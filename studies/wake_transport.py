@@ -20,18 +20,30 @@ from aerodynamic_validation import show, write_csv
 
 from propmdao.aerodynamics.coefficients import coefficients
 from propmdao.aerodynamics.lattice.rings import BOUND_CORE, blade_influence, wake_influence
-from propmdao.aerodynamics.solutions.axial import WAKE_AGES, solve_steady
-from propmdao.aerodynamics.solutions.lattice_loads import lattice_geometry, loads_with_wake
+from propmdao.aerodynamics.rotor_geometry import RotorGeometry
+from propmdao.aerodynamics.solutions import axial
+from propmdao.aerodynamics.solutions.case import RotorCase
+from propmdao.aerodynamics.solutions.lattice_loads import (
+    axial_onset,
+    lattice_geometry,
+    loads_with_wake,
+)
 from propmdao.aerodynamics.vortices.cores import core_radius
 from propmdao.aerodynamics.wakes import helical, momentum
+from propmdao.aerodynamics.wakes.helical import wake_transport
 from propmdao.formats.propellers import load_propeller
 from propmdao.geometry.blade import Blade
 from propmdao.geometry.lattice import lattice_interpolation, lattice_nodes
 from propmdao.propeller.description import Propeller
+from propmdao.records.air import Air
+from propmdao.records.states import RotorState
+from propmdao.records.units import RAD_PER_S
 
 CASES = [(name, 2, J) for name in ("apcsf_11x4.7", "apce_10x7") for J in (0.0, 0.2, 0.4)]
 CASES += [("apcsf_11x4.7", n_blades, J) for n_blades in (3, 4) for J in (0.0, 0.2)]
-RPM, DENSITY, AIR_VISCOSITY = 4200.0, 1.225, 1.46e-5  # rpm, kg/m3, m2/s
+RPM, AIR = 4200.0, Air()
+TRANSPORT = wake_transport()
+AGES = np.asarray(TRANSPORT.ages)
 CORE = 0.03  # of the sheets where they act on themselves, in radii: 0.01 to 0.06 change CT by 0.1 %
 RELAXATION, STEPS = 0.3, 24
 LAST_TURN = 3.5  # beyond it the end of the wake is felt: the velocity of the turn before is kept
@@ -42,47 +54,46 @@ FORMATS = {"propeller": "", "blades": "d", "J": ".1f", "CT": ".4f", "P/ideal": "
 
 _loads = jax.jit(loads_with_wake)
 _by_wake = jax.jit(wake_influence)
-_by_blades = jax.jit(blade_influence, static_argnames="n_blades")
+_by_blades = jax.jit(blade_influence)
 
 
-def nodes_of(propeller: Propeller) -> jax.Array:
-    """Corner points of its lattice."""
-    stations = propeller.r_over_R
-    span = lattice_interpolation(stations, 24)
-    return lattice_nodes(Blade.from_propeller(propeller), span, 8)
+def case_of(propeller: Propeller, speed: float) -> RotorCase:
+    """A propeller in flight as the solvers take it, in inviscid flow."""
+    span = lattice_interpolation(propeller.r_over_R, 24)
+    nodes = lattice_nodes(Blade.from_propeller(propeller), span, 8)
+    rotor = RotorGeometry(nodes, 0.5 * propeller.diameter, propeller.n_blades)
+    return RotorCase(rotor, RotorState(RPM * RAD_PER_S, speed, AIR), wake=TRANSPORT)
 
 
 def relaxed(propeller: Propeller, speed: float, steps: int = STEPS) -> dict[str, float]:
     """Thrust and power of the wake that moves as it says, and how it moves, in w."""
-    n_blades, radius, omega = propeller.n_blades, 0.5 * propeller.diameter, RPM * np.pi / 30.0
-    nodes = nodes_of(propeller)
-    lattice = lattice_geometry(nodes, n_blades, radius)
+    case = case_of(propeller, speed)
+    rotor, state = case.rotor, case.state
+    n_blades, radius, omega = rotor.n_blades, rotor.radius, state.rotation_speed
+    lattice = lattice_geometry(rotor)
     core, thick = (
-        core_radius(jnp.asarray(WAKE_AGES), omega, AIR_VISCOSITY, of * radius)
-        for of in (BOUND_CORE, CORE)
+        core_radius(jnp.asarray(AGES), omega, AIR.kinematic_viscosity, initial * radius)
+        for initial in (BOUND_CORE, CORE)
     )
-    trailing, ages, time = lattice.rings.corner[-1], jnp.asarray(WAKE_AGES), WAKE_AGES / omega
+    trailing, ages, time = lattice.rings.corner[-1], jnp.asarray(AGES), AGES / omega
     r0 = np.hypot(*np.asarray(trailing[:, :2]).T)
-    outward = np.asarray(helical.outer_part(r0 / radius))
+    outward = np.asarray(helical.outer_part(r0 / radius, TRANSPORT.law))
     inside = (1.0 - outward) * (r0 > 0.35 * radius) * np.gradient(r0) * r0  # area, without the hub
 
-    induced = float(solve_steady(nodes, n_blades, radius, omega, speed, DENSITY).induced_velocity)
+    induced = float(axial.solve(case).induced_velocity)
     rigid = (speed + induced) * time
     drift = np.stack([rigid, rigid, np.ones_like(time)])  # of outer, inner part, and contraction
     for _ in range(steps):
-        axial = outward[:, None] * drift[0] + (1.0 - outward)[:, None] * drift[1]
-        sheets = helical.helices(trailing, ages, n_blades, axial, drift[2])
-        loads = _loads(lattice, sheets, core, omega, speed, induced, DENSITY, None)
+        downstream = outward[:, None] * drift[0] + (1.0 - outward)[:, None] * drift[1]
+        sheets = helical.helices(trailing, ages, n_blades, downstream, drift[2])
+        onset = axial_onset(lattice, state, induced)
+        loads = _loads(lattice, sheets, core, onset, AIR, None)
         thrust, torque = n_blades * float(loads.thrust), n_blades * float(loads.torque)
-        induced = float(
-            momentum.momentum_induced_velocity(
-                thrust, speed, omega * radius, DENSITY, np.pi * radius**2
-            )
-        )
+        induced = float(momentum.momentum_induced_velocity(thrust, state, radius))
         middle = np.asarray(0.5 * (sheets[:, 0, 1:] + sheets[:, 0, :-1]))
-        at, circulation = middle.reshape(-1, 3), loads.circulation
-        velocity = jnp.tensordot(circulation[-1], _by_wake(at, sheets, thick), axes=(0, 1))
-        by_blades = _by_blades(at, lattice.rings, n_blades, radius)
+        points, circulation = middle.reshape(-1, 3), loads.circulation
+        velocity = jnp.tensordot(circulation[-1], _by_wake(points, sheets, thick), axes=(0, 1))
+        by_blades = _by_blades(points, lattice.rings, rotor.azimuths, BOUND_CORE * radius)
         velocity += jnp.tensordot(circulation, by_blades, axes=((0, 1), (1, 2)))
         x, y, z = np.asarray(velocity).reshape(3, *middle.shape[:2])
         radial = (x * middle[..., 0] + y * middle[..., 1]) / np.hypot(*middle[..., :2].T).T
@@ -90,19 +101,19 @@ def relaxed(propeller: Propeller, speed: float, steps: int = STEPS) -> dict[str,
         shed = np.abs(np.diff(np.pad(np.asarray(circulation[-1]), 1)))
         tip = shed * (np.arange(shed.size) > np.argmax(circulation[-1]))
         outer, inner = (
-            _settled(np.average(-z, axis=0, weights=of)) for of in (shed * outward, inside)
+            _settled(np.average(-z, axis=0, weights=w)) for w in (shed * outward, inside)
         )
-        inward = np.average(radial, axis=0, weights=tip) * (WAKE_AGES[1:] < 4.0 * np.pi)
+        inward = np.average(radial, axis=0, weights=tip) * (AGES[1:] < 4.0 * np.pi)
         change = [speed + outer, speed + inner, inward / np.average(r0, weights=tip)]
         towards = np.cumsum(np.pad(change * np.diff(time), ((0, 0), (1, 0))), axis=1)
         towards[2] += 1.0
         drift += RELAXATION * (towards - drift)
-    of = coefficients(thrust, torque, omega, speed, DENSITY, propeller.diameter)
-    passed = 0.5 * (WAKE_AGES[1:] + WAKE_AGES[:-1]) * n_blades / (2.0 * np.pi)
+    numbers = coefficients(thrust, torque, state, propeller.diameter)
+    passed = 0.5 * (AGES[1:] + AGES[:-1]) * n_blades / (2.0 * np.pi)
     bands = [(passed > low) & (passed <= high) for low, high in PASSAGES]
     return {
-        "CT": float(of.CT),
-        "CP": float(of.CP),
+        "CT": float(numbers.CT),
+        "CP": float(numbers.CP),
         "P/ideal": torque * omega / (thrust * (speed + induced)),
         "r/r0": float(drift[2, -1]),
         "before": float(outer[bands[0]].mean() / induced),
@@ -113,18 +124,17 @@ def relaxed(propeller: Propeller, speed: float, steps: int = STEPS) -> dict[str,
 
 def _settled(velocity: np.ndarray) -> np.ndarray:
     """Velocity of the turn before the last ones in their stead."""
-    age = WAKE_AGES[1:] / (2.0 * np.pi)
+    age = AGES[1:] / (2.0 * np.pi)
     before = (age > LAST_TURN - 1.0) & (age <= LAST_TURN)
     return np.where(age > LAST_TURN, velocity[before].mean(), velocity)
 
 
 def prescribed(propeller: Propeller, speed: float) -> dict[str, float]:
     """Thrust and power of the prescribed wake."""
-    radius, omega = 0.5 * propeller.diameter, RPM * np.pi / 30.0
-    n_blades = propeller.n_blades
-    found = solve_steady(nodes_of(propeller), n_blades, radius, omega, speed, DENSITY)
-    of = coefficients(found.thrust, found.torque, omega, speed, DENSITY, propeller.diameter)
-    return {"CT": float(of.CT), "CP": float(of.CP)}
+    case = case_of(propeller, speed)
+    loads = axial.solve(case)
+    numbers = coefficients(loads.thrust, loads.torque, case.state, propeller.diameter)
+    return {"CT": float(numbers.CT), "CP": float(numbers.CP)}
 
 
 def compare(cases: list[tuple[str, int, float]], steps: int = STEPS) -> list[dict[str, object]]:

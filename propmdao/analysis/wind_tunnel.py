@@ -167,7 +167,7 @@ def computed(
         result = analyze(
             propeller, rpm=rpm, speed=speed, twist_offset_deg=twist_offset_deg, **settings
         )
-        if result.steady.converged:
+        if result.loads.converged:
             row[:] = float(result.coefficients.CT), float(result.coefficients.CP)
     return Points(points.rpm, points.J, *coefficients.T)
 

@@ -5,6 +5,7 @@ import json
 import numpy as np
 import pytest
 
+from propmdao.acoustics.kinematics.observers import arc
 from propmdao.analysis.single_point import analyze
 from propmdao.formats.propellers import load_propeller
 from propmdao.records.fidelity import Fidelity
@@ -26,7 +27,7 @@ def test_required_thrust_is_met_and_agrees_with_the_rpm_found():
 
 
 def test_results_are_consistent_plain_numbers():
-    result = run(rpm=4200.0, speed=8.0, observers=[(1.905, -45.0), (3.0, 0.0)])
+    result = run(rpm=4200.0, speed=8.0, observers=arc([1.905, 3.0], [-45.0, 0.0]))
     assert json.loads(json.dumps(result, allow_nan=False)) == result
     assert result["CP"] == pytest.approx(2 * np.pi * result["CQ"])
     assert result["shaft_power"] == pytest.approx(result["torque"] * 4200 * np.pi / 30)
@@ -47,7 +48,7 @@ def test_results_are_consistent_plain_numbers():
 def test_hover_and_standstill_are_ordinary():
     hover = run(rpm=4200.0)
     assert hover["thrust"] > 3.0 and hover["eta"] == 0.0 and hover["J"] == 0.0
-    still = run(rpm=0.0, speed=8.0, observers=[(1.905, -45.0)])
+    still = run(rpm=0.0, speed=8.0, observers=arc(1.905, [-45.0]))
     assert still["thrust"] == still["torque"] == still["CT"] == still["J"] == 0.0
     assert still["converged"] and still["observers"][0]["oaspl_db"] == -200.0
     json.dumps(still, allow_nan=False)

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 import soundfile
 
+from propmdao.acoustics.kinematics.observers import arc
 from propmdao.acoustics.sounds.recordings import SAMPLE_RATE
 from propmdao.analysis.single_point import analyze
 from propmdao.analysis.sounds import pressure_record, write_sound
@@ -51,7 +52,7 @@ def test_what_cannot_be_heard(hover, tmp_path):
     for full_scale in (0.0, 1e-6):
         with pytest.raises(ValueError, match=r"full scale must be|would be clipped"):
             write_sound(tmp_path / "a.wav", hover, 0.5, full_scale)
-    many = run(observers=[(2.0, angle) for angle in np.linspace(-80.0, 80.0, 17)])
+    many = run(observers=arc(2.0, np.linspace(-80.0, 80.0, 17)))
     with pytest.raises(ValueError, match="at most 16 observers; there are 17"):
         write_sound(tmp_path / "a.wav", many, 0.5)
     with pytest.raises(ValueError, match="blade passage frequency must be positive"):
@@ -66,4 +67,4 @@ def test_figures_of_what_there_is(hover):
     tones = run(observers=ARC[:2])
     assert set(figures(tones)) == {"spectrum", "pressure"}
     with pytest.raises(ValueError, match="figures need observers"):
-        figures(run(observers=[]))
+        figures(run(observers=arc(1.0, [])))

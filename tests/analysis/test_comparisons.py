@@ -6,6 +6,7 @@ import csv
 
 import pytest
 
+from propmdao.acoustics.kinematics.observers import arc
 from propmdao.analysis.comparisons import (
     ROWS,
     at_observer,
@@ -65,7 +66,7 @@ def apcsf_at_two_observers():
     return analyze(
         load_propeller("apcsf_11x4.7"),
         rpm=4200.0,
-        observers=[(1.905, 0.0), (1.905, -45.0)],
+        observers=arc(1.905, [0.0, -45.0]),
         fidelity=Fidelity(2, 4, 5, 4, 2),
     )
 

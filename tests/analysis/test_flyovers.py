@@ -7,6 +7,7 @@ import dataclasses
 import numpy as np
 import pytest
 
+from propmdao.acoustics.kinematics.observers import arc
 from propmdao.acoustics.levels.decibels import oaspl_db
 from propmdao.acoustics.levels.time_levels import a_weighted, short_time_level_db
 from propmdao.acoustics.sounds.recordings import SAMPLE_RATE
@@ -28,7 +29,7 @@ def run(**options):
 @pytest.fixture(scope="module")
 def found():
     """Heard by somebody who flies along below."""
-    return run(speed=8.0, broadband=True, observers=[(HEIGHT, 0.0)])
+    return run(speed=8.0, broadband=True, observers=arc(HEIGHT, [0.0]))
 
 
 @pytest.fixture(scope="module")

@@ -39,9 +39,9 @@ def cruise():
 
 @pytest.fixture(scope="module")
 def strips(cruise):
-    states = cruise.steady.sections
+    states = cruise.loads.sections
     flow = states.relative_speed, states.lift_coefficient
-    return strip_flow(cruise.steady.strips, *flow, BLADE, RADII)
+    return strip_flow(cruise.loads.strips, *flow, BLADE, RADII)
 
 
 @pytest.fixture(scope="module")
@@ -59,7 +59,7 @@ def column(rows, key):
 
 def test_positions_lie_on_the_trailing_edge(cruise, strips):
     # Three quarters of a chord behind the quarter line, downstream of it, within the blade.
-    behind = strips.position - cruise.steady.strips.quarter_chord
+    behind = strips.position - cruise.loads.strips.quarter_chord
     chord = np.asarray(strips.section.chord)
     assert_allclose(np.linalg.norm(behind, axis=1), 0.75 * chord, rtol=1e-12)
     assert np.all(np.asarray(behind)[:, 1:] < 0)  # the blade turns toward +y, lift toward +z
@@ -78,7 +78,7 @@ def test_directions_are_a_right_angle_and_their_normal_is_up(strips):
 
 
 def test_sections_are_those_of_the_lattice(cruise, strips):
-    section, states = strips.section, cruise.steady.sections
+    section, states = strips.section, cruise.loads.sections
     assert_allclose(section.angle_of_attack, states.lift_coefficient / (2 * np.pi))
     assert_allclose(section.speed, states.relative_speed)
     blunt, angle = trailing_edge(BLADE, RADII)
@@ -93,7 +93,7 @@ def test_lift_of_the_strips_is_the_thrust(cruise, strips):
     section = strips.section
     lift = np.pi * 1.225 * section.speed**2 * section.chord * section.angle_of_attack
     thrust = PROPELLER.n_blades * float(np.sum(lift * section.span))
-    assert thrust == pytest.approx(float(cruise.steady.thrust), rel=0.1)
+    assert thrust == pytest.approx(float(cruise.loads.thrust), rel=0.1)
 
 
 def test_every_mechanism_is_reported_in_every_band(observer):

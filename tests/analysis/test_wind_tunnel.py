@@ -121,7 +121,7 @@ def test_computed_is_the_analysis_of_every_point():
 def test_point_without_convergence_is_nan(monkeypatch):
     def never(*args, **settings):
         result = analyze(*args, **settings)
-        steady = dataclasses.replace(result.steady, converged=np.asarray(False))
+        steady = dataclasses.replace(result.loads, converged=np.asarray(False))
         return dataclasses.replace(result, steady=steady)
 
     monkeypatch.setattr("propmdao.analysis.wind_tunnel.analyze", never)

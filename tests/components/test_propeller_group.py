@@ -51,7 +51,7 @@ def test_group_agrees_with_analyze(problem, propeller, small, viscous, trip):
         viscous=viscous,
         broadband=viscous,
         trip=trip,
-        observers=[(1.905, e) for e in ELEVATIONS],
+        observers=arc(1.905, ELEVATIONS),
         fidelity=small,
     ).to_dict()
     for ours, theirs in (

@@ -50,7 +50,7 @@ def analysis_of(case: dict[str, Any]) -> Analysis:
 def numbers_of(analysis: Analysis) -> dict[str, Any]:
     """Results, loads by strip, and what each observer hears."""
     result = analysis.to_dict()
-    solution, tones, noise = analysis.steady, analysis.tones, analysis.broadband
+    solution, tones, noise = analysis.loads, analysis.tones, analysis.broadband
     observers = []
     for i, levels in enumerate(result["observers"]):
         heard: dict[str, Any] = {

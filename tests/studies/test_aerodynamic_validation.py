@@ -10,6 +10,7 @@ import pytest
 
 pytest.importorskip("matplotlib")
 
+from propmdao.acoustics.kinematics.observers import arc
 from propmdao.analysis.single_point import analyze
 from propmdao.analysis.wind_tunnel import calibrated_twist_deg
 from propmdao.formats.propellers import load_propeller
@@ -126,7 +127,7 @@ def test_hover_noise_table_is_that_of_its_tones(import_study, monkeypatch, capsy
     table = rows(tmp_path / "hover_noise.csv")
     assert len(table) == 17
     found = analyze(
-        hover.PROPELLER, rpm=4200, density=hover.DENSITY, observers=[(1.905, -45.0)]
+        hover.PROPELLER, rpm=4200, density=hover.DENSITY, observers=arc(1.905, [-45.0])
     ).to_dict()["observers"][0]["spl_bpf_db"]
     (row,) = (row for row in table if (row["rpm"], row["elevation, deg"]) == ("4200", "-45.0"))
     assert float(row["computed, dB"]) == pytest.approx(found, abs=0.006)
@@ -136,6 +137,6 @@ def test_hover_noise_table_is_that_of_its_tones(import_study, monkeypatch, capsy
 
 def test_loads_that_need_no_scaling_keep_their_tone(import_study):
     hover = import_study("hover_noise")
-    found = analyze(hover.PROPELLER, rpm=4200, density=hover.DENSITY, observers=[(1.905, -45.0)])
+    found = analyze(hover.PROPELLER, rpm=4200, density=hover.DENSITY, observers=arc(1.905, [-45.0]))
     (same,) = hover.scaled_tone(found, 1.0, 1.0)
     assert same == pytest.approx(found.to_dict()["observers"][0]["spl_bpf_db"], abs=1e-9)

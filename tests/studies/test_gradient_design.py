@@ -156,7 +156,7 @@ def test_derivatives_find_a_quieter_blade_that_meets_every_constraint(
     before = study.column(study.thesis.BASELINE, baseline)
     other = {"tones": "total", "total": "tones"}[objective]
     prob = study.free_form.build_problem(
-        objective, float(baseline.steady.torque), float(before[other])
+        objective, float(baseline.loads.torque), float(before[other])
     )
     history, *_ = study.run_slsqp(prob, tmp_path / "cases.sql")
     assert before[objective] - history.objective[-1] > gain

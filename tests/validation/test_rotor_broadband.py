@@ -41,7 +41,7 @@ def hover():
 def strips(hover):
     propeller = load_propeller("apcsf_11x4.7")
     section_radii = strip_interpolation(propeller.r_over_R, Fidelity().n_spanwise)
-    steady, states = hover.steady, hover.steady.sections
+    steady, states = hover.loads, hover.loads.sections
     flow = steady.strips, states.relative_speed, states.lift_coefficient
     return strip_flow(*flow, Blade.from_propeller(propeller), section_radii)
 
@@ -72,7 +72,7 @@ def test_third_octaves_with_the_thrust_of_the_wind_tunnel(measured):
         load_propeller("apcsf_11x4.7"), rpm=RPM, density=DENSITY, broadband=True,
         observers=observers, twist_offset_deg=2.25,
     )  # fmt: skip
-    assert 0.97 < float(turned.steady.thrust) / 4.037 < 1.02
+    assert 0.97 < float(turned.loads.thrust) / 4.037 < 1.02
     heard = np.asarray(level_db(turned.broadband.total))
     low, high = np.searchsorted(BANDS_HZ, (490, 10100))
     found = error(heard[:, low:high], measured)
@@ -97,7 +97,7 @@ def error(level, measured):
 
 
 def test_thrust(hover):
-    assert 0.84 < float(hover.steady.thrust) / 4.037 < 0.88
+    assert 0.84 < float(hover.loads.thrust) / 4.037 < 0.88
 
 
 def test_third_octaves_from_500_hz_to_10_khz(hover, measured):
@@ -135,7 +135,7 @@ def test_a_degree_of_angle_from_zero_lift_is_worth_two_and_a_half_decibels(
 def test_geometric_angle_from_zero_lift_is_too_loud(hover, strips, measured):
     # Where boundary layers take lift away, the angle at which a thin section of the same camber
     # would stand is larger than that at which it has the lift.
-    steady = hover.steady
+    steady = hover.loads
     geometric = steady.sections.angle_of_attack - steady.strips.zero_lift_angle
     angle = np.asarray(geometric - strips.section.angle_of_attack)
     assert angle.mean() > np.radians(1.0)

@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from propmdao.acoustics.kinematics.observers import arc
 from propmdao.analysis.sweeps import grid, sweep
 from propmdao.propeller.description import Propeller
 from propmdao.records.listening import Surroundings
@@ -31,7 +32,9 @@ def test_a_point_is_passed_on_and_its_results_are_a_row(
     point = {"rpm": 3000.0, "speed": 8.0, "rho": 1.1, "twist_offset_deg": 1.5}
     blade = {"chord_factor": 1.1, "diameter": 0.3, "n_blades": 3.0}
     path = tmp_path / "sweep.csv"
-    new, failures = sweep(propeller, [point | blade], path, observers=[(1.905, -45.0), (2.0, 0.0)])
+    new, failures = sweep(
+        propeller, [point | blade], path, observers=arc([1.905, 2.0], [-45.0, 0.0])
+    )
     assert (new, failures) == (1, [])
     (changed, asked), (row,) = analyzer.calls[0], rows_of(path)
     assert (changed.diameter, changed.n_blades) == (0.3, 3)
@@ -178,7 +181,7 @@ def test_two_workers_make_the_same_table(propeller: Propeller, tmp_path: Path) -
     points = grid({"rpm": [3000.0, 4000.0], "speed": [0.0, 8.0]}) + [{"rpm": 4e5, "speed": 0.0}]
     for n_workers in (1, 2):
         new, failures = sweep(
-            propeller, points, tmp_path / f"{n_workers}.csv", observers=[(1.905, -45.0)],
+            propeller, points, tmp_path / f"{n_workers}.csv", observers=arc(1.905, [-45.0]),
             n_workers=n_workers,
         )  # fmt: skip
         assert new == 5 and len(failures) == 1
