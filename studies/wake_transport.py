@@ -11,6 +11,7 @@ evidence. Inviscid flow; two, three and four blades.
 
 import argparse
 import dataclasses
+from functools import partial
 from pathlib import Path
 
 import jax
@@ -54,7 +55,6 @@ FORMATS = {"propeller": "", "blades": "d", "J": ".1f", "CT": ".4f", "P/ideal": "
 
 _loads = jax.jit(loads_with_wake)
 _by_wake = jax.jit(wake_influence)
-_by_blades = jax.jit(blade_influence)
 
 
 def case_of(propeller: Propeller, speed: float) -> RotorCase:
@@ -71,6 +71,7 @@ def relaxed(propeller: Propeller, speed: float, steps: int = STEPS) -> dict[str,
     rotor, state = case.rotor, case.state
     n_blades, radius, omega = rotor.n_blades, rotor.radius, state.rotation_speed
     lattice = lattice_geometry(rotor)
+    by_all_blades = jax.jit(partial(blade_influence, azimuths=rotor.azimuths))
     core, thick = (
         core_radius(jnp.asarray(AGES), omega, AIR.kinematic_viscosity, initial * radius)
         for initial in (BOUND_CORE, CORE)
@@ -93,7 +94,7 @@ def relaxed(propeller: Propeller, speed: float, steps: int = STEPS) -> dict[str,
         middle = np.asarray(0.5 * (sheets[:, 0, 1:] + sheets[:, 0, :-1]))
         points, circulation = middle.reshape(-1, 3), loads.circulation
         velocity = jnp.tensordot(circulation[-1], _by_wake(points, sheets, thick), axes=(0, 1))
-        by_blades = _by_blades(points, lattice.rings, rotor.azimuths, BOUND_CORE * radius)
+        by_blades = by_all_blades(points, lattice.rings, core=BOUND_CORE * radius)
         velocity += jnp.tensordot(circulation, by_blades, axes=((0, 1), (1, 2)))
         x, y, z = np.asarray(velocity).reshape(3, *middle.shape[:2])
         radial = (x * middle[..., 0] + y * middle[..., 1]) / np.hypot(*middle[..., :2].T).T
