@@ -16,8 +16,8 @@ from propmdao.acoustics.levels.weighting import level_dba
 from propmdao.aerodynamics.lattice.rings import vortex_rings
 from propmdao.aerodynamics.lattice.strips import blade_strips, strip_radii
 from propmdao.analysis.self_noise import BANDS_HZ, self_noise, strip_flow
-from propmdao.components.bases.jax_component import Arrays
-from propmdao.components.bases.nodes_comp import STATIC, OperatingPointsComp
+from propmdao.components.bases.array_function import Arrays
+from propmdao.components.bases.nodes_comp import STATIC, NodesComp
 from propmdao.components.noise_inputs import add_noise_inputs, check_rotor, noise_at
 from propmdao.geometry.blade import Blade, span_interpolation
 from propmdao.propeller.description import Propeller
@@ -26,7 +26,7 @@ from propmdao.records.fidelity import Fidelity
 _SILENCE_DB = -200.0
 
 
-class BroadbandComp(OperatingPointsComp):
+class BroadbandComp(NodesComp):
     """Broadband self-noise by Brooks, Pope and Marcolini, at observers that fly along.
 
     Names without a word are those of the tones, `oaspl_db` and `oaspl_dba` of `AcousticsComp`;

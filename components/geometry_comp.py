@@ -10,7 +10,8 @@ import openmdao.api as om
 
 from propmdao.aerodynamics.lattice.strips import strip_radii
 from propmdao.aerodynamics.sections.polars.family import SectionPolars, blade_tables
-from propmdao.components.bases.jax_component import Arrays, JaxComponent, evaluate
+from propmdao.components.bases.array_function import Arrays, evaluate
+from propmdao.components.bases.jax_component import JaxComponent
 from propmdao.components.bases.nodes_comp import STATIC
 from propmdao.components.rotor_inputs import require_diameter
 from propmdao.geometry.blade import Blade, design_lift_coefficient, span_interpolation

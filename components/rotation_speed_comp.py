@@ -7,8 +7,8 @@ from typing import Any
 import openmdao.api as om
 
 from propmdao.aerodynamics.trim import rotation_speed_by_interpolation
-from propmdao.components.bases.jax_component import Arrays
-from propmdao.components.bases.nodes_comp import OperatingPointsComp
+from propmdao.components.bases.array_function import Arrays
+from propmdao.components.bases.nodes_comp import NodesComp
 from propmdao.components.rotor_inputs import (
     add_rotor_inputs,
     declare_rotor,
@@ -19,7 +19,7 @@ from propmdao.components.rpm_bounds import bounds_at, declare_bounds, given_boun
 from propmdao.records.units import RAD_PER_S
 
 
-class RotationSpeedComp(OperatingPointsComp):
+class RotationSpeedComp(NodesComp):
     """Rotation speed at which the thrust, linear between two rotation speeds, is the required one.
 
     The rule of the thesis. It misses the thrust required by some per cent and is there to show by

@@ -12,8 +12,8 @@ from openmdao.utils.options_dictionary import OptionsDictionary
 from propmdao.aerodynamics.sections.laws import AIR_VISCOSITY, ViscousSections
 from propmdao.aerodynamics.sections.polars.family import SectionPolars
 from propmdao.aerodynamics.sections.polars.table import PolarTable
-from propmdao.components.bases.jax_component import Arrays
-from propmdao.components.bases.nodes_comp import STATIC, OperatingPointsComp
+from propmdao.components.bases.array_function import Arrays
+from propmdao.components.bases.nodes_comp import STATIC, NodesComp
 from propmdao.records.fidelity import Fidelity
 
 
@@ -31,12 +31,12 @@ def declare_rotor(options: OptionsDictionary) -> None:
     options.declare("stall_delay", True, types=bool, desc="Of rotating sections.")
 
 
-def add_rotor_inputs(component: OperatingPointsComp) -> ViscousSections | None:
+def add_rotor_inputs(component: NodesComp) -> ViscousSections | None:
     """Declare the inputs that `rotor_at` reads.
 
     Parameters
     ----------
-    component : OperatingPointsComp
+    component : NodesComp
         Component in its ``setup``.
 
     Returns

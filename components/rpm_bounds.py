@@ -8,7 +8,7 @@ import numpy as np
 from openmdao.utils.options_dictionary import OptionsDictionary
 
 from propmdao.aerodynamics.trim import LARGEST_TIP_SPEED, LEAST_TIP_SPEED
-from propmdao.components.bases.jax_component import Arrays
+from propmdao.components.bases.array_function import Arrays
 from propmdao.records.units import RAD_PER_S
 
 _TIP_SPEEDS = np.array([LEAST_TIP_SPEED, LARGEST_TIP_SPEED])

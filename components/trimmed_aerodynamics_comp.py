@@ -9,7 +9,7 @@ import openmdao.api as om
 from propmdao.aerodynamics.solutions.known_root import trimmed_at
 from propmdao.aerodynamics.trim import TrimError, require_reached, solve_trimmed
 from propmdao.components.aerodynamics_comp import AerodynamicsComp, loads
-from propmdao.components.bases.jax_component import Arrays
+from propmdao.components.bases.array_function import Arrays
 from propmdao.components.rotor_inputs import require_diameter, rotor_at
 from propmdao.components.rpm_bounds import bounds_at, declare_bounds, given_bounds
 from propmdao.records.units import RAD_PER_S
@@ -61,7 +61,7 @@ load_force, section_speed, section_lift_coefficient
         self.constants = self.constants, given_bounds(self.options)
         self.search, self.function = _trimmed, _at_root
         self.state, self.residual = "rotation_speed", "missing_thrust"
-        self.of_state = {"rpm": 1.0 / RAD_PER_S}
+        self.state_outputs = {"rpm": 1.0 / RAD_PER_S}
 
     def _add_rotation_speed(self) -> None:
         self.add_point_input("thrust_required", val=1.0, units="N")

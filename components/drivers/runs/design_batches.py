@@ -9,7 +9,7 @@ from typing import Any
 
 import openmdao.api as om
 
-from propmdao.components.bases.jax_component import JaxComponent, arrays
+from propmdao.components.bases.jax_component import JaxComponent, copied
 from propmdao.components.drivers.runs.candidate import Array
 from propmdao.components.drivers.runs.model_run import ModelRun, run_system, said
 
@@ -72,8 +72,10 @@ class DesignBatches:
         designs = []
         for place in going:
             self._reach(path, batch[place])
-            designs.append(arrays(component._inputs))
-        for place, values in zip(going, component.at_designs(designs, self._at_once), strict=True):
+            designs.append(copied(component._inputs))
+        for place, values in zip(
+            going, component.evaluate_designs(designs, self._at_once), strict=True
+        ):
             if isinstance(values, om.AnalysisError):
                 failure = _as_of_a_run(component, values)
                 batch[place] = dataclasses.replace(batch[place], failure=failure)

@@ -12,7 +12,7 @@ from numpy.testing import assert_allclose
 from propmdao.acoustics.kinematics.observers import arc
 from propmdao.components import DifferentialEvolutionDriver, PropellerGroup, SweepDriver
 from propmdao.components.bases.jax_component import JaxComponent
-from propmdao.components.bases.nodes_comp import OperatingPointsComp
+from propmdao.components.bases.nodes_comp import NodesComp
 from propmdao.components.drivers.runs.design_batches import DesignBatches
 
 ROUNDING = 1e-9  # of sums in another order, and searches that end a step earlier or later
@@ -50,7 +50,7 @@ class Scaled(om.ExplicitComponent):
         outputs["h"] = 2.0 * inputs["g"]
 
 
-class Square(OperatingPointsComp):
+class Square(NodesComp):
     """y = x^2 at every node; it fails where x > 2 and rests at 0."""
 
     def setup(self):
