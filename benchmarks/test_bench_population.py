@@ -16,7 +16,7 @@ import jax
 import numpy as np
 import pytest
 
-from propmdao.components.drivers.runs.design_batches import DesignBatches
+from propmdao.components.drivers.evaluation.design_batches import DesignBatches
 
 N_DESIGNS = 64
 

@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from propmdao.components.drivers.runs.model_pool import ModelPool
+from propmdao.components.drivers.evaluation.worker_pool import WorkerPool
 from propmdao.runtime.worker_processes import start_workers
 
 N_DESIGNS, ROUNDS = 12, 7
@@ -23,7 +23,7 @@ def models(monkeypatch):
     return importlib.import_module("worker_models")
 
 
-def seconds(pool: ModelPool, starts: list) -> float:
+def seconds(pool: WorkerPool, starts: list) -> float:
     began = time.perf_counter()
     assert all(run.error is None and not run.failure for run in pool.run(starts))
     return time.perf_counter() - began
@@ -45,7 +45,7 @@ def test_two_workers_over_one(benchmark, models):
     ):
         executors = {"one": one, "two": two, "two with threads": two_free}
         pools = {
-            name: ModelPool(models.low_noise, prob.model, executor)
+            name: WorkerPool(models.low_noise, prob.model, executor)
             for name, executor in executors.items()
         }
         for pool in pools.values():

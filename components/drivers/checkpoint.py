@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from propmdao.components.drivers.runs.candidate import Array
+from propmdao.components.drivers.evaluation.candidate import Array
 
 FORMAT = "propmdao search 1"
 SAME_MODEL = 1e-6  # relative difference of outputs, far above rounding

@@ -10,7 +10,7 @@ import numpy as np
 from scipy.optimize import NonlinearConstraint, OptimizeResult, differential_evolution
 from tqdm import tqdm
 
-from propmdao.components.drivers.runs.candidate import Array, Candidate
+from propmdao.components.drivers.evaluation.candidate import Array, Candidate
 
 
 @dataclasses.dataclass(frozen=True)

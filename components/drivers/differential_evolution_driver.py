@@ -21,10 +21,10 @@ from propmdao.components.drivers.constrained_search import (
     Generation,
     SearchStopped,
 )
-from propmdao.components.drivers.runs.candidate import Array, Candidate
-from propmdao.components.drivers.runs.design_runs import DesignRuns
-from propmdao.components.drivers.runs.model_run import ModelRun, put_outputs
-from propmdao.components.drivers.runs.model_runner import declare_runner_options, model_runner
+from propmdao.components.drivers.evaluation.candidate import Array, Candidate
+from propmdao.components.drivers.evaluation.design_problem import DesignProblem
+from propmdao.components.drivers.evaluation.model_run import ModelRun, put_outputs
+from propmdao.components.drivers.evaluation.model_runner import declare_runner_options, model_runner
 from propmdao.components.drivers.search_options import (
     SAMPLERS,
     declare_file_options,
@@ -164,7 +164,7 @@ class DifferentialEvolutionDriver(Driver):
         self._check_for_invalid_desvar_values()
         if not self._designvars:
             raise RuntimeError(f"{self.msginfo} needs a design variable; the model has none")
-        self._runs = DesignRuns(self, self.options["equality_tolerance"])
+        self._runs = DesignProblem(self, self.options["equality_tolerance"])
         seed = self.options["seed"]
         self._checkpoint = self._open_checkpoint()
         if self._checkpoint is not None:

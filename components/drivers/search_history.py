@@ -8,7 +8,7 @@ import os
 import numpy as np
 import openmdao.api as om
 
-from propmdao.components.drivers.runs.candidate import Array, constraint_violations
+from propmdao.components.drivers.evaluation.candidate import Array, constraint_violations
 
 
 @dataclasses.dataclass(frozen=True)

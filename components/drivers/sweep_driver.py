@@ -14,9 +14,9 @@ from tqdm import tqdm
 
 from propmdao.analysis.result_table import ResultTable, Value, table_files
 from propmdao.components.drivers.checkpoint import SAME_MODEL
-from propmdao.components.drivers.runs.candidate import Array
-from propmdao.components.drivers.runs.model_run import put_outputs, said
-from propmdao.components.drivers.runs.model_runner import (
+from propmdao.components.drivers.evaluation.candidate import Array
+from propmdao.components.drivers.evaluation.model_run import put_outputs, said
+from propmdao.components.drivers.evaluation.model_runner import (
     ModelRunner,
     declare_runner_options,
     model_runner,

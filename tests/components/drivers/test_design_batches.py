@@ -13,7 +13,7 @@ from propmdao.acoustics.kinematics.observers import arc
 from propmdao.components import DifferentialEvolutionDriver, PropellerGroup, SweepDriver
 from propmdao.components.bases.jax_component import JaxComponent
 from propmdao.components.bases.nodes_comp import NodesComp
-from propmdao.components.drivers.runs.design_batches import DesignBatches
+from propmdao.components.drivers.evaluation.design_batches import DesignBatches
 
 ROUNDING = 1e-9  # of sums in another order, and searches that end a step earlier or later
 

@@ -13,7 +13,7 @@ import openmdao.api as om
 import pytest
 
 from propmdao.components import DifferentialEvolutionDriver
-from propmdao.components.drivers.runs.model_run import put_outputs
+from propmdao.components.drivers.evaluation.model_run import put_outputs
 from propmdao.runtime.worker_processes import WorkerLostError
 
 

@@ -15,15 +15,15 @@ import openmdao.api as om
 from openmdao.core.constants import _SetupStatus
 from openmdao.core.driver import Driver
 
-from propmdao.components.drivers.runs.candidate import Array
-from propmdao.components.drivers.runs.model_run import ModelRun, run_system
+from propmdao.components.drivers.evaluation.candidate import Array
+from propmdao.components.drivers.evaluation.model_run import ModelRun, run_system
 from propmdao.runtime.worker_processes import results_in_order
 
 # An executor may run tasks on threads; a Problem serves one at a time.
 _WORKER = threading.local()
 
 
-class ModelPool:
+class WorkerPool:
     """Models on the workers of an executor, each run from the output values it is sent.
 
     Values travel, structure does not: every worker builds its Problem once, and what the outputs

@@ -10,11 +10,11 @@ from concurrent.futures import Executor
 import openmdao.api as om
 from openmdao.utils.options_dictionary import OptionsDictionary
 
-from propmdao.components.drivers.runs.design_batches import DesignBatches
-from propmdao.components.drivers.runs.model_pool import ModelPool
+from propmdao.components.drivers.evaluation.design_batches import DesignBatches
+from propmdao.components.drivers.evaluation.worker_pool import WorkerPool
 from propmdao.runtime.worker_processes import start_workers
 
-ModelRunner = ModelPool | DesignBatches
+ModelRunner = WorkerPool | DesignBatches
 
 
 def declare_runner_options(options: OptionsDictionary) -> None:
@@ -62,7 +62,7 @@ def model_runner(model: om.Group, options: OptionsDictionary) -> Iterator[ModelR
 
     Yields
     ------
-    ModelPool, DesignBatches or None
+    WorkerPool, DesignBatches or None
         None when the model is to be run as it is, one design after the other.
 
     Raises
@@ -93,12 +93,12 @@ def model_runner(model: om.Group, options: OptionsDictionary) -> Iterator[ModelR
             " returns the Problem, set up"
         )
     if executor is not None:
-        yield ModelPool(factory, model, executor)
+        yield WorkerPool(factory, model, executor)
         return
     with contextlib.ExitStack() as stack:
         # A Problem that is set up clears the reports of its name: they would be this process's.
         folder = stack.enter_context(tempfile.TemporaryDirectory())
         workers = stack.enter_context(start_workers(n_workers, {"OPENMDAO_WORKDIR": folder}))
-        pool = ModelPool(factory, model, workers)
+        pool = WorkerPool(factory, model, workers)
         pool.build_ahead(n_workers)
         yield pool

@@ -10,8 +10,8 @@ from typing import Any
 import openmdao.api as om
 
 from propmdao.components.bases.jax_component import JaxComponent, copied
-from propmdao.components.drivers.runs.candidate import Array
-from propmdao.components.drivers.runs.model_run import ModelRun, run_system, said
+from propmdao.components.drivers.evaluation.candidate import Array
+from propmdao.components.drivers.evaluation.model_run import ModelRun, run_system, said
 
 # Groups from the model down, each with the name of the subsystem that it hands inputs to.
 _Path = tuple[tuple[om.Group, str], ...]

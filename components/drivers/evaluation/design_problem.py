@@ -8,11 +8,11 @@ import numpy as np
 import openmdao.api as om
 from openmdao.core.driver import Driver
 
-from propmdao.components.drivers.runs.candidate import Array, Candidate, constraint_violations
-from propmdao.components.drivers.runs.model_run import said
+from propmdao.components.drivers.evaluation.candidate import Array, Candidate, constraint_violations
+from propmdao.components.drivers.evaluation.model_run import said
 
 
-class DesignRuns:
+class DesignProblem:
     """Design variables, objective and constraints of a driver's model.
 
     Parameters

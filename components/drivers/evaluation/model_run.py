@@ -7,7 +7,7 @@ from typing import Any
 
 import openmdao.api as om
 
-from propmdao.components.drivers.runs.candidate import Array
+from propmdao.components.drivers.evaluation.candidate import Array
 
 
 @dataclasses.dataclass(frozen=True)
