@@ -71,5 +71,4 @@ def declare_file_options(options: OptionsDictionary) -> None:
         desc="File to which every evaluated design is added, and from which the search goes on "
         "where there is one; a relative path as of best_file; None: no file.",
     )
-    declare("progress", True, types=bool, desc="Progress bar on stderr, if it is a terminal.")
     declare("disp", True, types=bool, desc="Print a summary at the end.")
