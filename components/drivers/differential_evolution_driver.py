@@ -105,8 +105,13 @@ class DifferentialEvolutionDriver(Driver):
 
         self.fail = True
         self.message = ""
+        # The state of a run, which `run` makes anew.
         self._search: ConstrainedSearch | None = None
-        self._case_failure = ""
+        self._design_problem: DesignProblem  # from the final model
+        self._checkpoint: Checkpoint | None = None
+        self._runner = ModelRunner(self)
+        self._deadline = math.inf  # of the time budget, on the monotonic clock
+        self._case_failure = ""  # of the case that is recorded
 
     @property
     def history(self) -> list[Generation]:

@@ -58,6 +58,7 @@ class SweepDriver(om.AnalysisDriver):
         super().__init__(samples, **kwargs)
         self._name = "SweepDriver"
         self.failures: list[str] = []
+        self._initial: Array = np.empty(0)  # values of all outputs that every run starts from
 
     def _declare_options(self) -> None:
         super()._declare_options()
