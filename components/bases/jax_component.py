@@ -1,4 +1,4 @@
-"""What the components share: a jitted function of arrays as compute and derivative products."""
+"""Base class of the components: a jitted function as compute and derivative products."""
 
 from __future__ import annotations
 
@@ -142,7 +142,7 @@ class JaxComponent(om.ExplicitComponent):
         Raises
         ------
         om.AnalysisError
-            Where `check` raises it.
+            When `check` raises it.
         """
         values = evaluate(self.evaluated(), self.static, self.constants, inputs)
         self.check(inputs, values)

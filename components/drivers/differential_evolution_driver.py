@@ -86,7 +86,7 @@ class DifferentialEvolutionDriver(Driver):
     fail : bool
         True when no feasible design was found.
     message : str
-        Why the search ended.
+        Result of the search in a line, and why it ended.
     """
 
     def __init__(self, **kwargs: Any) -> None:

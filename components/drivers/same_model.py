@@ -11,7 +11,10 @@ SAME_MODEL = 1e-6  # relative difference of results, far above another machine's
 
 
 def require_same_results(
-    file: str, point: str, then: Mapping[str, npt.ArrayLike], now: Mapping[str, npt.ArrayLike]
+    file: str,
+    point: str,
+    file_results: Mapping[str, npt.ArrayLike],
+    model_results: Mapping[str, npt.ArrayLike],
 ) -> None:
     """Refuse a file whose results the model does not give any more.
 
@@ -21,9 +24,9 @@ def require_same_results(
         Kind and path of the file, for the message.
     point : str
         Design or sample that the results belong to, for the message.
-    then : mapping of str to array
-        Results by name that the file has; more than are compared do no harm.
-    now : mapping of str to array
+    file_results : mapping of str to array
+        Results by name that the file has; those that the model does not give are ignored.
+    model_results : mapping of str to array
         Results by name that the model gives now.
 
     Raises
@@ -31,10 +34,11 @@ def require_same_results(
     ValueError
         When a result differs by more than another machine's rounding.
     """
-    for name, value in now.items():
-        if not np.allclose(value, then[name], rtol=SAME_MODEL, atol=0.0):
+    for name, value in model_results.items():
+        expected = file_results[name]
+        if not np.allclose(value, expected, rtol=SAME_MODEL, atol=0.0):
             raise ValueError(
-                f"{file} is of another model: at {point} {name} was {_text(then[name])} and is"
+                f"{file} is of another model: at {point} {name} was {_text(expected)} and is"
                 f" {_text(value)}; name another file, or delete it to start anew"
             )
 

@@ -27,14 +27,15 @@ Sample = dict[str, dict[str, Any]]
 class SweepDriver(om.AnalysisDriver):
     """Runs the model at every sample of OpenMDAO's generators, into a table that is gone on with.
 
-    What it adds to ``om.AnalysisDriver``, whose samples, responses and recorder it keeps:
+    It keeps the samples, responses and recorder of ``om.AnalysisDriver`` and adds:
 
     - A CSV file with a row per sample: its values, the responses (``add_responses``, as well as
       objectives and constraints of the model), ``status`` and the ``reason`` of a failure. Elements
       of arrays are columns ``name[0]``, ``name[1]`` and so on, in the units of the sample and of
       the response.
     - Samples that the table has are not run again, so a sweep that was interrupted or killed goes
-      on, and one with more samples adds these. One of them is, to see that the model is the same.
+      on, and one with more samples adds these. One that it has is run to see that the model is
+      still the same.
     - Every run starts from the output values that the model held when the driver started, so that
       no row depends on the one before it; and the samples may run on workers, or several at once.
 
@@ -142,8 +143,8 @@ class SweepDriver(om.AnalysisDriver):
             if point not in table or table.row(point)["status"] != "ok":
                 continue
             next(ModelRunner(self).run([self._start_at(sample)]))
-            then = {name: float(table.row(point)[name]) for name in self._results()}
-            require_same_results(f"'{table.path}'", str(point), then, self._results())
+            known = {name: float(table.row(point)[name]) for name in self._results()}
+            require_same_results(f"'{table.path}'", str(point), known, self._results())
             return
 
     def _outputs(self) -> Any:

@@ -79,11 +79,10 @@ class DesignProblem:
         return {name: np.array(self.outputs._abs_get_val(name)) for name in self._sources()}
 
     def outputs_from(self, design: Array, responses: dict[str, Any]) -> Array:
-        """All outputs where only `responses` are known: the others are nan, but the independent."""
+        """All outputs where only `responses` are known; others than the independent are nan."""
         start = self.start_at(design)
         model = self._driver._problem().model
-        known = model._var_allprocs_abs2meta["output"]
-        for name, meta in known.items():
+        for name, meta in model._var_allprocs_abs2meta["output"].items():
             if "openmdao:indep_var" not in meta["tags"]:
                 self.outputs.set_var(name, np.nan)
         for name, value in responses.items():
@@ -100,7 +99,7 @@ class DesignProblem:
         design : (n_variables,) array
             Design of the run.
         failure : str
-            Why the run has failed, empty when it has not.
+            Reason for which the run has failed, empty when it has not.
 
         Returns
         -------

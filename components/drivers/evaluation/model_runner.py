@@ -1,4 +1,4 @@
-"""Where a driver's model runs: here, on workers, or at several designs at once."""
+"""The runner of a driver's model: here, on workers, or at several designs at once."""
 
 from __future__ import annotations
 
@@ -37,8 +37,8 @@ class ModelRunner:
         Parameters
         ----------
         starts : iterable of (n,) arrays
-            Values of all outputs before each run. Without a backend each is asked for when its run
-            is, and may be computed by the model.
+            Values of all outputs before each run. Whoever makes them may use the model, which no
+            run needs while they are made.
 
         Yields
         ------
@@ -50,7 +50,7 @@ class ModelRunner:
         WorkerLostError
             When a worker dies.
         Exception
-            Whatever the factory of the workers raises.
+            Any exception of the factory of the workers.
         """
         model = self._driver._problem().model
         if self._backend is None:
@@ -66,10 +66,14 @@ class ModelRunner:
 
 
 def declare_runner_options(options: OptionsDictionary) -> None:
-    """Declare where the model runs, as `model_runner` reads it."""
+    """Declare the options of `model_runner`."""
     declare = options.declare
     declare(
-        "n_workers", 1, types=int, lower=1, desc="Processes that run the model; 1: only this one."
+        "n_workers",
+        1,
+        types=int,
+        lower=1,
+        desc="Number of processes that run the model; 1: only this one.",
     )
     declare(
         "executor",
@@ -92,7 +96,7 @@ def declare_runner_options(options: OptionsDictionary) -> None:
         1,
         types=int,
         lower=1,
-        desc="Designs that the components of JAX evaluate in one call of this process.",
+        desc="Number of designs that components of JAX evaluate in one call of this process.",
     )
 
 

@@ -84,7 +84,7 @@ class WorkerPool:
         WorkerLostError
             When a worker dies.
         Exception
-            Whatever the factory raises.
+            Any exception of the factory.
         """
         for run in results_in_order(self._executor, partial(_run_model, self._task), starts):
             if run.error is not None and not run.built:

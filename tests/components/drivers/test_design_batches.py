@@ -192,10 +192,10 @@ def test_a_sweep_has_the_same_rows(tmp_path):
         prob.run_driver()
         with path.open(newline="") as file:
             rows.append(list(csv.DictReader(file)))
-    for one, other in zip(*rows, strict=True):
-        assert (one["status"], one["reason"]) == (other["status"], other["reason"])
-        if one["status"] == "ok":
-            assert_allclose(float(other["f"]), float(one["f"]), rtol=1e-13)
+    for single, batched in zip(*rows, strict=True):
+        assert (single["status"], single["reason"]) == (batched["status"], batched["reason"])
+        if single["status"] == "ok":
+            assert_allclose(float(batched["f"]), float(single["f"]), rtol=1e-13)
     assert {row["status"] for row in rows[0]} == {"ok", "failed"}
 
 

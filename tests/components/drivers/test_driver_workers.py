@@ -139,10 +139,10 @@ def test_what_a_run_elsewhere_has_left_reaches_every_input():
     prob.setup()
     prob.run_model()
     left = prob.model.get_nonlinear_vectors()[1].asarray(copy=True)
-    there = prob.model.feet._inputs["h"].copy()
+    expected = prob.model.feet._inputs["h"].copy()
     prob.model.feet._inputs["h"] = 0.0
     put_outputs(prob.model, left)
-    assert prob.model.feet._inputs["h"] == there
+    assert prob.model.feet._inputs["h"] == expected
 
 
 def test_options_of_a_wrong_type_are_refused():
@@ -163,8 +163,8 @@ def test_a_worker_that_dies_ends_the_run_and_a_second_run_ends_as_if_it_had_not(
     prob = models.problem(deadly, n_workers=2, checkpoint=tmp_path / "checkpoint")
     with pytest.raises(WorkerLostError, match="a worker ended without a result") as raised:
         prob.run_driver()
-    known = len((tmp_path / "checkpoint").read_text().splitlines()) - 1
-    assert f"The {known} designs evaluated so far are in" in raised.value.__notes__[0]
+    n_known = len((tmp_path / "checkpoint").read_text().splitlines()) - 1
+    assert f"The {n_known} designs evaluated so far are in" in raised.value.__notes__[0]
     again = models.problem(deadly, n_workers=2, checkpoint=tmp_path / "checkpoint")
     again.run_driver()
     assert again.driver.history == plain.driver.history
