@@ -1,7 +1,6 @@
 """The checkpoint: a search resumed after whatever ended it is the search that was not ended."""
 
 import functools
-import importlib
 import json
 import os
 import signal
@@ -15,12 +14,6 @@ import openmdao.api as om
 import pytest
 
 SCRIPT = Path(__file__).parent / "worker_models.py"
-
-
-@pytest.fixture
-def models(monkeypatch):
-    monkeypatch.syspath_prepend(Path(__file__).parent)
-    return importlib.import_module("worker_models")
 
 
 @pytest.fixture

@@ -1,12 +1,10 @@
 """The driver on workers: the same search as without, and what becomes of their errors."""
 
 import functools
-import importlib
 import os
 import subprocess
 import sys
 from concurrent.futures import ThreadPoolExecutor
-from pathlib import Path
 
 import numpy as np
 import openmdao.api as om
@@ -15,13 +13,6 @@ import pytest
 from propmdao.components import DifferentialEvolutionDriver
 from propmdao.components.drivers.evaluation.model_run import put_outputs
 from propmdao.runtime.worker_processes import WorkerLostError
-
-
-@pytest.fixture
-def models(monkeypatch):
-    """The module of models; workers find it by the path that they inherit."""
-    monkeypatch.syspath_prepend(Path(__file__).parent)
-    return importlib.import_module("worker_models")
 
 
 @pytest.fixture
