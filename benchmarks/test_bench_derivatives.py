@@ -1,4 +1,4 @@
-"""What exact derivatives cost: an adjoint gradient against the analysis it belongs to.
+"""Cost of exact derivatives: an adjoint gradient against the analysis it belongs to.
 
 The aim: objective and two constraints by 30 variables in no more than four analyses, in one run,
 with no more than 2 GiB of memory. The ratio is in the benchmark's ``extra_info``.

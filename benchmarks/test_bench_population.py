@@ -10,26 +10,20 @@ of them (`test_bench_workers.py`). A blade takes 20 MB.
 from __future__ import annotations
 
 import resource
-from pathlib import Path
 
 import jax
 import numpy as np
 import pytest
 
-from propmdao.components.drivers.runs.design_batches import DesignBatches
+from propmdao.components.drivers.evaluation.design_batches import DesignBatches
 
 N_DESIGNS = 64
 
 
 @pytest.fixture(scope="module")
-def problem():
+def problem(models):
     """The low-noise design of `worker_models`, ready to run."""
-    path = Path(__file__).parent
-    with pytest.MonkeyPatch.context() as patch:
-        patch.syspath_prepend(path)
-        from worker_models import low_noise
-
-        prob = low_noise()
+    prob = models.low_noise()
     prob.final_setup()
     return prob
 
@@ -50,7 +44,7 @@ def test_population(benchmark, problem, at_once):
     def run(starts: list) -> None:
         if at_once > 1:
             runs = DesignBatches(problem.model, at_once).run(starts)
-            assert not any(run.failure or run.error for run in runs)
+            assert not any(run.ended_early for run in runs)
             return
         for start in starts:
             outputs.set_val(start)

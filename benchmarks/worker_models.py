@@ -1,4 +1,6 @@
-"""What workers build in benchmarks, in a module that they can import."""
+"""The Problem of benchmarks, in a module that workers can import."""
+
+from __future__ import annotations
 
 import openmdao.api as om
 
@@ -7,8 +9,8 @@ from propmdao.components import PropellerGroup
 from propmdao.formats.propellers import load_propeller
 
 
-def low_noise():
-    """Low noise at 8 m/s and 1.2 N by twist and chord, at full resolution."""
+def low_noise() -> om.Problem:
+    """Problem of low noise at 8 m/s and 1.2 N by twist and chord, at full resolution."""
     three_points = [0.15, 0.5, 1.0]
     prob = om.Problem(reports=False)
     prob.model.add_subsystem(

@@ -9,8 +9,8 @@ import numpy as np
 from propmdao.acoustics.levels.decibels import mean_square, oaspl_db, spl_db
 from propmdao.acoustics.levels.weighting import oaspl_dba
 from propmdao.acoustics.sources.formulation1a import tones
-from propmdao.components.bases.jax_component import Arrays
-from propmdao.components.bases.nodes_comp import STATIC, OperatingPointsComp
+from propmdao.components.bases.array_function import Arrays
+from propmdao.components.bases.nodes_comp import STATIC, NodesComp
 from propmdao.components.inputs.noise_inputs import add_noise_inputs, check_rotor, noise_state
 from propmdao.geometry.surface import surface_panels
 from propmdao.records.fidelity import Fidelity
@@ -18,7 +18,7 @@ from propmdao.records.loads import PointLoads
 from propmdao.records.quantities import LEVELS
 
 
-class AcousticsComp(OperatingPointsComp):
+class AcousticsComp(NodesComp):
     """Tonal noise by Formulation 1A, at observers that fly along with the rotor.
 
     Usable alone, with blade loads from elsewhere. With `num_nodes` everything but the surface and

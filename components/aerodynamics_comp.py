@@ -10,8 +10,8 @@ from propmdao.aerodynamics.coefficients import coefficients
 from propmdao.aerodynamics.solutions import axial
 from propmdao.aerodynamics.solutions.known_root import steady_at
 from propmdao.aerodynamics.solutions.result import RotorLoads, failure
-from propmdao.components.bases.jax_component import Arrays
-from propmdao.components.bases.nodes_comp import OperatingPointsComp
+from propmdao.components.bases.array_function import Arrays
+from propmdao.components.bases.nodes_comp import NodesComp
 from propmdao.components.bases.root_component import RootComponent
 from propmdao.components.inputs.rotor_inputs import (
     RotorConstants,
@@ -32,7 +32,7 @@ def n_loads(fidelity: Fidelity) -> int:
     return nc * ns + nc * (ns + 1) + ns
 
 
-class AerodynamicsComp(OperatingPointsComp, RootComponent):
+class AerodynamicsComp(NodesComp, RootComponent):
     """Steady vortex lattice with its helical wake, hover included.
 
     With `num_nodes` everything but the blade, `lattice_nodes`, `diameter` and `section_polars`, has

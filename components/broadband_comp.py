@@ -14,8 +14,8 @@ from propmdao.acoustics.levels.weighting import level_dba
 from propmdao.aerodynamics.lattice.rings import vortex_rings
 from propmdao.aerodynamics.lattice.strips import blade_strips
 from propmdao.analysis.self_noise import BANDS_HZ, self_noise, strip_flow
-from propmdao.components.bases.jax_component import Arrays
-from propmdao.components.bases.nodes_comp import STATIC, OperatingPointsComp
+from propmdao.components.bases.array_function import Arrays
+from propmdao.components.bases.nodes_comp import STATIC, NodesComp
 from propmdao.components.inputs.model_options import declare_trip
 from propmdao.components.inputs.noise_inputs import add_noise_inputs, check_rotor, noise_state
 from propmdao.geometry.blade import Blade
@@ -28,7 +28,7 @@ from propmdao.records.quantities import BROADBAND_LEVELS
 _SILENCE_DB = -200.0
 
 
-class BroadbandComp(OperatingPointsComp):
+class BroadbandComp(NodesComp):
     """Broadband self-noise by Brooks, Pope and Marcolini, at observers that fly along.
 
     `oaspl_db` and `oaspl_dba` without a qualifier mean the tones only, those of `AcousticsComp`;

@@ -9,7 +9,8 @@ import numpy as np
 import openmdao.api as om
 
 from propmdao.aerodynamics.sections.polars.family import SectionPolars, blade_tables
-from propmdao.components.bases.jax_component import Arrays, JaxComponent, evaluate
+from propmdao.components.bases.array_function import Arrays, evaluate
+from propmdao.components.bases.jax_component import JaxComponent
 from propmdao.components.bases.nodes_comp import STATIC
 from propmdao.components.inputs.rotor_inputs import require_diameter
 from propmdao.geometry.blade import Blade, design_lift_coefficient

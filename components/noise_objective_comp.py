@@ -20,12 +20,12 @@ def soft_maximum_db(level_db: npt.ArrayLike, exponent: float) -> float:
     level_db : array
         Levels [dB].
     exponent : float
-        As in `NoiseObjectiveComp`.
+        Exponent p of `NoiseObjectiveComp`.
 
     Returns
     -------
     float
-        Their power mean [dB].
+        Power mean of the levels [dB].
     """
     levels, slope = np.asarray(level_db), exponent * _PER_DB
     mean: float = (logsumexp(slope * levels) - np.log(levels.size)) / slope
@@ -51,15 +51,15 @@ class NoiseObjectiveComp(om.ExplicitComponent):
     Outputs
     -------
     soft_maximum_db : float
-        Their power mean, in the unit of the levels.
+        Power mean of the levels, in their unit.
 
     Options
     -------
     shape : int or tuple
-        Of `level_db`: microphones, or operating points by microphones.
+        Shape of `level_db`: microphones, or operating points by microphones.
     exponent : float
-        p, at least 1, which is the level of the mean of the mean squares; the larger, the nearer to
-        the maximum and the sharper its corners.
+        Exponent p, at least 1, which gives the level of the mean of the mean squares. The larger it
+        is, the nearer to the maximum and the sharper its corners.
 
     Raises
     ------
@@ -68,14 +68,19 @@ class NoiseObjectiveComp(om.ExplicitComponent):
     """
 
     def initialize(self) -> None:
-        self.options.declare("shape", types=(int, tuple), desc="Of level_db.")
-        self.options.declare("exponent", 8.0, types=(int, float), desc="1: the mean square.")
+        self.options.declare("shape", types=(int, tuple), desc="Shape of level_db.")
+        self.options.declare(
+            "exponent",
+            8.0,
+            types=(int, float),
+            desc="Exponent of the power mean; 1: the mean square.",
+        )
 
     def setup(self) -> None:
         exponent = self.options["exponent"]
         if not 1.0 <= exponent < np.inf:
             raise ValueError(f"exponent must be at least 1 and finite; it is {exponent:g}")
-        self.add_input("level_db", shape=self.options["shape"], desc="dB or dBA.")
+        self.add_input("level_db", shape=self.options["shape"], desc="Levels in dB or dBA.")
         self.add_output("soft_maximum_db", desc="Power mean of the levels.")
         self.declare_partials("soft_maximum_db", "level_db")
 

@@ -12,8 +12,8 @@ from propmdao.aerodynamics.trim import (
     require_bounds,
     rotation_speed_by_interpolation,
 )
-from propmdao.components.bases.jax_component import Arrays
-from propmdao.components.bases.nodes_comp import OperatingPointsComp
+from propmdao.components.bases.array_function import Arrays
+from propmdao.components.bases.nodes_comp import NodesComp
 from propmdao.components.inputs.rotor_inputs import (
     add_rotor_inputs,
     declare_rotor,
@@ -24,7 +24,7 @@ from propmdao.components.inputs.rpm_bounds import bounds_at, declare_bounds, giv
 from propmdao.records.units import RAD_PER_S
 
 
-class RotationSpeedComp(OperatingPointsComp):
+class RotationSpeedComp(NodesComp):
     """Rotation speed at which the thrust, linear between two rotation speeds, is the required one.
 
     The rule of the thesis. It misses the thrust required by some per cent and is there to show by

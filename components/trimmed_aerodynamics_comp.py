@@ -17,7 +17,7 @@ from propmdao.aerodynamics.trim import (
     solve_for_thrust,
 )
 from propmdao.components.aerodynamics_comp import AerodynamicsComp, loads_outputs
-from propmdao.components.bases.jax_component import Arrays
+from propmdao.components.bases.array_function import Arrays
 from propmdao.components.inputs.rotor_inputs import require_diameter, rotor_at
 from propmdao.components.inputs.rpm_bounds import bounds_at, declare_bounds, given_bounds
 from propmdao.records.units import RAD_PER_S

@@ -1,1 +1,1 @@
-"""What components are built on: a compiled function, operating points, a root."""
+"""Base classes of the components: around a compiled function, at many points, at a root."""

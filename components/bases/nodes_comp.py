@@ -3,22 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from itertools import compress
 from typing import Any
 
 import numpy as np
 import openmdao.api as om
 from openmdao.utils.options_dictionary import OptionsDictionary
 
-from propmdao.components.bases.jax_component import (
-    Arrays,
-    Derivatives,
-    JaxComponent,
-    LastPoints,
-    Shapes,
-    arrays,
-    seeds_of,
-)
+from propmdao.components.bases.array_function import Arrays, Derivatives, Shapes
+from propmdao.components.bases.jax_component import JaxComponent, complete_seeds, copied
 
 #: Tells Dymos that an input has no axis of nodes.
 STATIC = ["dymos.static_target"]
@@ -31,7 +23,7 @@ def declare_num_nodes(options: OptionsDictionary) -> None:
     Parameters
     ----------
     options : OptionsDictionary
-        Of a component or group.
+        Options of a component or group.
     """
     options.declare(
         "num_nodes",
@@ -39,11 +31,11 @@ def declare_num_nodes(options: OptionsDictionary) -> None:
         types=int,
         lower=1,
         allow_none=True,
-        desc="Operating points, the leading axis of all that belongs to one; None: no such axis.",
+        desc="Number of operating points, the leading axis of what belongs to one; None: no axis.",
     )
 
 
-class OperatingPointsComp(JaxComponent):
+class NodesComp(JaxComponent):
     """Function of one operating point, evaluated at ``num_nodes`` of them.
 
     A subclass declares with `add_point_input` and `add_point_output` what belongs to an operating
@@ -65,7 +57,6 @@ class OperatingPointsComp(JaxComponent):
         self._input_shapes: Shapes = {}
         self._output_shapes: Shapes = {}
         super().__init__(**options)
-        self._linearised = LastPoints(self._linearise, self.n_points)
 
     def initialize(self) -> None:
         declare_num_nodes(self.options)
@@ -78,13 +69,13 @@ class OperatingPointsComp(JaxComponent):
         Parameters
         ----------
         name : str
-            Its name.
+            Name of the variable.
         val : float
             Initial value.
         shape : tuple of int
-            At one point; () is a scalar, which ``function`` gets and returns as (1,).
+            Shape at one point; () is a scalar, which ``function`` gets and returns as (1,).
         **metadata
-            What ``add_input`` takes beside these.
+            Further arguments of ``add_input``: units, desc, tags ...
         """
         self._input_shapes[name] = shape or (1,)
         self.add_input(name, val=np.full(self._full_shape(shape), val), **metadata)
@@ -97,68 +88,71 @@ class OperatingPointsComp(JaxComponent):
         Parameters
         ----------
         name : str
-            Its name.
+            Name of the variable.
         val : float
             Initial value.
         shape : tuple of int
-            At one point; () is a scalar, which ``function`` gets and returns as (1,).
+            Shape at one point; () is a scalar, which ``function`` gets and returns as (1,).
         **metadata
-            What ``add_output`` takes beside these.
+            Further arguments of ``add_output``: units, desc, tags ...
         """
         self._output_shapes[name] = shape or (1,)
         self.add_output(name, val=np.full(self._full_shape(shape), val), **metadata)
 
     def compute(self, inputs: Any, outputs: Any) -> None:
-        still = dict.fromkeys(self._output_shapes, 0.0)
-        for point, at in self._points(inputs):
+        zeros = dict.fromkeys(self._output_shapes, 0.0)
+        for node, point in self._points(inputs):
             try:
-                values = still if self.at_rest(at) else self.values_at(at)
+                values = zeros if self.at_rest(point) else self.values_at(point)
             except om.AnalysisError as error:
-                self._name_node(point, error)
+                self._name_node(node, error)
                 raise
             for name in self._output_shapes:
-                self._at(point, name, outputs)[:] = values[name]
+                self._view(node, name, outputs)[:] = values[name]
 
-    def at_designs(
-        self, designs: Sequence[Arrays], at_once: int
+    def evaluate_designs(
+        self, designs: Sequence[Arrays], batch_size: int
     ) -> list[Arrays | om.AnalysisError]:
         n = self.n_points()
-        points = [at for design in designs for _, at in self._points(design)]
-        moves = [not self.at_rest(at) for at in points]
-        found = iter(self._at_points(list(compress(points, moves)), at_once * n))
-        still: Arrays = dict.fromkeys(self._output_shapes, 0.0)
-        values = [next(found) if moving else still for moving in moves]
+        points = [point for design in designs for _, point in self._points(design)]
+        resting = [self.at_rest(point) for point in points]
+        moving = [point for point, rests in zip(points, resting, strict=True) if not rests]
+        evaluated = iter(self._evaluate_points(moving, batch_size * n))
+        zeros: Arrays = dict.fromkeys(self._output_shapes, 0.0)
+        values = [zeros if rests else next(evaluated) for rests in resting]
         return [self._together(values[i : i + n]) for i in range(0, len(values), n)]
 
     def _together(self, values: Sequence[Arrays | om.AnalysisError]) -> Arrays | om.AnalysisError:
         """Outputs from those of all points, or the first error of one."""
         outputs = {name: np.zeros_like(self._outputs[name]) for name in self._output_shapes}
-        for point, of_point in enumerate(values):
-            if isinstance(of_point, om.AnalysisError):
-                self._name_node(point, of_point)
-                return of_point
+        for node, point_values in enumerate(values):
+            if isinstance(point_values, om.AnalysisError):
+                self._name_node(node, point_values)
+                return point_values
             for name in outputs:
-                self._at(point, name, outputs)[:] = of_point[name]
+                self._view(node, name, outputs)[:] = point_values[name]
         return outputs
 
-    def _name_node(self, point: int, error: om.AnalysisError) -> None:
+    def _name_node(self, node: int, error: om.AnalysisError) -> None:
         """Put the node into the message of an error, where there are several."""
         if self.options["num_nodes"] is not None:
-            error.args = (f"node {point}: {error}",)
+            error.args = (f"node {node}: {error}",)
 
     def compute_jacvec_product(self, inputs: Any, d_inputs: Any, d_outputs: Any, mode: str) -> None:
         start, end = (d_inputs, d_outputs) if mode == "fwd" else (d_outputs, d_inputs)
-        given = arrays(start)
-        for point, at in self._points(inputs):
-            shapes = {n: v.shape for n, v in at.items()} if mode == "fwd" else self._output_shapes
-            seeds = seeds_of({name: self._at(point, name, given) for name in given}, shapes)
-            if self.at_rest(at) or not any(seed.any() for seed in seeds.values()):
+        all_seeds = copied(start)
+        for node, point in self._points(inputs):
+            node_seeds = {name: self._view(node, name, all_seeds) for name in all_seeds}
+            input_shapes = {name: value.shape for name, value in point.items()}
+            shapes = input_shapes if mode == "fwd" else self._output_shapes
+            seeds = complete_seeds(node_seeds, shapes)
+            if self.at_rest(point) or not any(seed.any() for seed in seeds.values()):
                 continue
-            derivatives = self._linearised(at)
+            derivatives = self._linearised(point)
             products = (derivatives.forward if mode == "fwd" else derivatives.reverse)(seeds)
             for name in end:
                 if name in products:  # outputs that never change have none
-                    self._at(point, name, end)[:] += products[name]
+                    self._view(node, name, end)[:] += products[name]
 
     def n_points(self) -> int:
         return self.options["num_nodes"] or 1
@@ -167,7 +161,7 @@ class OperatingPointsComp(JaxComponent):
         return self._output_shapes
 
     def at_rest(self, inputs: Arrays) -> bool:
-        """Whether all outputs and all derivatives of a point are zero without a calculation.
+        """Return True where all outputs and derivatives of a point are zero without a calculation.
 
         Parameters
         ----------
@@ -177,31 +171,31 @@ class OperatingPointsComp(JaxComponent):
         Returns
         -------
         bool
-            By default never.
+            False, unless a subclass knows better.
         """
         return False
 
-    def _linearise(self, inputs: Arrays) -> Derivatives:
-        derivatives = self.derivatives_at(inputs)
+    def _derivatives_to_keep(self, inputs: Arrays) -> Derivatives:
+        derivatives = super()._derivatives_to_keep(inputs)
         if all(shape == (1,) for shape in self._output_shapes.values()):
             return _Gradients(derivatives, tuple(self._output_shapes))
         return derivatives
 
     def _points(self, inputs: Any) -> Iterator[tuple[int, Arrays]]:
-        """Points by number, and their inputs with those that all points share."""
-        values = arrays(inputs)
-        for point in range(self.n_points()):
-            yield point, {name: self._at(point, name, values) for name in values}
+        """Each node with its point: the inputs of the node and those that all nodes share."""
+        values = copied(inputs)
+        for node in range(self.n_points()):
+            yield node, {name: self._view(node, name, values) for name in values}
 
     def _full_shape(self, shape: Shape) -> Shape:
         """Shape with the axis of nodes."""
         n = self.options["num_nodes"]
         return (shape or (1,)) if n is None else (n, *shape)
 
-    def _at(self, point: int, name: str, values: Any) -> Any:
-        """View of the part of a variable that belongs to a point, or of one that all share."""
+    def _view(self, node: int, name: str, values: Any) -> Any:
+        """View of the part of a variable that belongs to a node, or of a variable all share."""
         shape = self._input_shapes.get(name) or self._output_shapes.get(name)
-        return values[name] if shape is None else values[name].reshape(-1, *shape)[point]
+        return values[name] if shape is None else values[name].reshape(-1, *shape)[node]
 
 
 class _Gradients:
@@ -209,19 +203,24 @@ class _Gradients:
 
     def __init__(self, derivatives: Derivatives, scalars: tuple[str, ...]) -> None:
         zero = {name: np.zeros(1) for name in scalars}
-        rows = [derivatives.reverse({**zero, of: np.ones(1)}) for of in scalars]
+        rows = [derivatives.reverse({**zero, scalar: np.ones(1)}) for scalar in scalars]
         self._scalars = scalars
-        self._by = {name: np.stack([np.asarray(row[name]) for row in rows]) for name in rows[0]}
+        self._gradients = {
+            name: np.stack([np.asarray(row[name]) for row in rows]) for name in rows[0]
+        }
 
     def forward(self, seeds: Arrays) -> Mapping[str, Any]:
         # Most seeds are zero, and those of the blade, the large ones, where it is no variable.
         products = sum(
-            np.tensordot(self._by[name], seed, axes=np.ndim(seed))
+            np.tensordot(self._gradients[name], seed, axes=np.ndim(seed))
             for name, seed in seeds.items()
             if seed.any()
         )
         return dict(zip(self._scalars, np.atleast_1d(products), strict=True))
 
     def reverse(self, seeds: Arrays) -> Mapping[str, Any]:
-        weights = np.concatenate([seeds[of] for of in self._scalars])
-        return {name: np.tensordot(weights, by, axes=1) for name, by in self._by.items()}
+        weights = np.concatenate([seeds[scalar] for scalar in self._scalars])
+        return {
+            name: np.tensordot(weights, gradients, axes=1)
+            for name, gradients in self._gradients.items()
+        }

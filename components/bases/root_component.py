@@ -4,19 +4,19 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from functools import cached_property
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
-from propmdao.components.bases.jax_component import (
+from propmdao.components.bases.array_function import (
     Arrays,
     Derivatives,
     Function,
     FunctionDerivatives,
-    JaxComponent,
-    LastPoints,
     Shapes,
 )
+from propmdao.components.bases.jax_component import JaxComponent
+from propmdao.components.bases.last_points import LastPoints
 
 
 class RootComponent(JaxComponent):
@@ -27,7 +27,8 @@ class RootComponent(JaxComponent):
     - ``function``: takes the state, a number (1,), among its inputs, and returns the residual, also
       (1,), among its outputs; both names are no variables of the component;
     - ``state``, ``residual``: these two names;
-    - ``of_state``: outputs (1,) that are the state in other units, with what it is multiplied by;
+    - ``state_outputs``: outputs (1,) that are the state in other units, with what it is multiplied
+      by;
     - ``search``: a function like ``function`` that finds the state: it takes the inputs alone, and
       returns the outputs, the state and whatever ``check`` needs.
 
@@ -38,62 +39,71 @@ class RootComponent(JaxComponent):
     search: Function
     state: str
     residual: str
-    of_state: Mapping[str, float] = {}
+    state_outputs: Mapping[str, float] = {}
 
     def __init__(self, **options: Any) -> None:
         super().__init__(**options)
-        self._found = LastPoints(super().values_at, self.n_points)
+        self._searched = LastPoints(super().values_at, self.n_points)
 
     def evaluated(self) -> Function:
         return self.search
 
     def values_at(self, inputs: Arrays) -> Mapping[str, Any]:
-        return self._found(inputs)  # which derivatives ask for again
+        return self._searched(inputs)  # which derivatives ask for again
 
     def derivatives_at(self, inputs: Arrays) -> Derivatives:
-        at = {**inputs, self.state: self._found(inputs)[self.state]}
+        root = {**inputs, self.state: self._searched(inputs)[self.state]}
         shapes = self.output_shapes()
-        function = self.function, self.static, self.constants
-        of_function = FunctionDerivatives(*function, at, (*shapes, self.residual))
-        return _AtRoot(of_function, shapes, self.state, self.residual, self.of_state)
+        derivatives = FunctionDerivatives(
+            self.function, self.static, self.constants, root, (*shapes, self.residual)
+        )
+        return _RootDerivatives(derivatives, shapes, self.state, self.residual, self.state_outputs)
 
 
-class _AtRoot:
+class _Gradient(NamedTuple):
+    """Derivatives of a scalar by every input and by the state."""
+
+    by_inputs: Arrays
+    by_state: float
+
+
+class _RootDerivatives:
     """Derivatives of the implicit function: dx = -(r_p dp) / r_x with the residual r(p, x) = 0."""
 
     def __init__(
         self,
-        of_function: Derivatives,
+        function: Derivatives,
         shapes: Shapes,
         state: str,
         residual: str,
-        of_state: Mapping[str, float],
+        state_outputs: Mapping[str, float],
     ) -> None:
-        self._function, self._shapes = of_function, shapes
-        self._state, self._residual, self._of_state = state, residual, of_state
+        self._function, self._shapes = function, shapes
+        self._state, self._residual, self._state_outputs = state, residual, state_outputs
 
     def forward(self, seeds: Arrays) -> Mapping[str, Any]:
-        by_inputs, by_state = self._gradient_of_residual
+        by_inputs, by_state = self._residual_gradient
         change = sum(np.vdot(by_inputs[name], np.asarray(seed)) for name, seed in seeds.items())
-        along = {**seeds, self._state: np.array([-change / by_state])}
-        return self._function.forward(along)
+        direction = {**seeds, self._state: np.array([-change / by_state])}
+        return self._function.forward(direction)
 
     def reverse(self, seeds: Arrays) -> Mapping[str, Any]:
-        by_inputs, by_state = self._gradient_of_residual
-        if any(np.any(seed) for name, seed in seeds.items() if name not in self._of_state):
+        residual = self._residual_gradient
+        if any(np.any(seed) for name, seed in seeds.items() if name not in self._state_outputs):
             products, by_root = self._pull(seeds, 0.0)
         else:  # the root alone is asked for
-            products = {name: np.zeros_like(value) for name, value in by_inputs.items()}
-            by_root = sum(scale * seeds[n].item() for n, scale in self._of_state.items())
-        factor = -by_root / by_state
-        return {name: value + factor * by_inputs[name] for name, value in products.items()}
+            products = {name: np.zeros_like(value) for name, value in residual.by_inputs.items()}
+            by_root = sum(scale * seeds[n].item() for n, scale in self._state_outputs.items())
+        factor = -by_root / residual.by_state
+        return {name: value + factor * residual.by_inputs[name] for name, value in products.items()}
 
     @cached_property
-    def _gradient_of_residual(self) -> tuple[dict[str, Any], float]:
+    def _residual_gradient(self) -> _Gradient:
         return self._pull({name: np.zeros(shape) for name, shape in self._shapes.items()}, 1.0)
 
-    def _pull(self, seeds: Arrays, of_residual: float) -> tuple[dict[str, Any], float]:
-        seeds = {**seeds, self._residual: np.array([of_residual])}
+    def _pull(self, seeds: Arrays, residual_seed: float) -> _Gradient:
+        """Gradient of the outputs and the residual, weighted with their seeds."""
+        seeds = {**seeds, self._residual: np.array([residual_seed])}
         products = {n: np.asarray(v) for n, v in self._function.reverse(seeds).items()}
         (by_state,) = products.pop(self._state)
-        return products, by_state
+        return _Gradient(products, by_state)

@@ -27,10 +27,10 @@ def write_best_design(path: pathlib.Path, driver: Driver, evaluations: int) -> N
     model = driver._problem().model
     sources = model._var_allprocs_abs2meta["output"]
 
-    def with_units(metas: dict[str, Any], of: dict[str, Any]) -> dict[str, Any]:
+    def with_units(metas: dict[str, Any], values: dict[str, Any]) -> dict[str, Any]:
         return {
             name: {
-                "value": of[name].tolist(),
+                "value": values[name].tolist(),
                 "units": meta["units"] or sources[meta["source"]]["units"],
             }
             for name, meta in metas.items()

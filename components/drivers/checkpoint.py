@@ -11,10 +11,10 @@ from typing import Any
 
 import numpy as np
 
-from propmdao.components.drivers.runs.candidate import Array
+from propmdao.components.drivers.evaluation.candidate import Array
+from propmdao.components.drivers.same_model import require_same_results
 
 FORMAT = "propmdao search 1"
-SAME_MODEL = 1e-6  # relative difference of outputs, far above rounding
 
 
 class Checkpoint:
@@ -32,8 +32,8 @@ class Checkpoint:
     path : pathlib.Path
         The file; it and its folder are made where there is none.
     search : dict
-        What determines the search, as JSON values: written to a new file, and required of an
-        existing one. ``"seed"`` may be None: then the file's, or a new one, is taken.
+        JSON values that determine the search: written to a new file, and required of an existing
+        one. ``"seed"`` may be None: then the file's, or a new one, is taken.
 
     Attributes
     ----------
@@ -73,23 +73,17 @@ class Checkpoint:
         Parameters
         ----------
         entry : dict
-            What `first_success` has returned.
+            Entry that `first_success` has returned.
         outputs : dict of str to array
-            What the objective and the constraints are read from, at its design now.
+            Outputs that the objective and the constraints are read from, at its design now.
 
         Raises
         ------
         ValueError
             When an output differs by more than another machine's rounding.
         """
-        for name, value in outputs.items():
-            then = entry["outputs"][name]
-            if not np.allclose(value, then, rtol=SAME_MODEL, atol=0.0):
-                raise ValueError(
-                    f"checkpoint '{self.path}' is of another model: at the same design {name} was"
-                    f" {then} and is {value.tolist()}; name another file, or delete it to start"
-                    " anew"
-                )
+        file = f"checkpoint '{self.path}'"
+        require_same_results(file, "the same design", entry["outputs"], outputs)
 
     def replay(self, designs: Sequence[Array]) -> list[dict[str, Any]]:
         """Return the next entries, which have to be of the designs.
@@ -97,7 +91,7 @@ class Checkpoint:
         Parameters
         ----------
         designs : sequence of (n_variables,) arrays
-            What the search evaluates next.
+            Designs that the search evaluates next.
 
         Returns
         -------
@@ -131,7 +125,7 @@ class Checkpoint:
         failure : str
             Why its analysis failed, empty when it did not.
         outputs : dict of str to array
-            What the objective and the constraints are read from, nothing after a failure.
+            Outputs that the objective and the constraints are read from, none after a failure.
         """
         entry = {
             "design": design.tolist(),

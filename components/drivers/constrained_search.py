@@ -10,7 +10,7 @@ import numpy as np
 from scipy.optimize import NonlinearConstraint, OptimizeResult, differential_evolution
 from tqdm import tqdm
 
-from propmdao.components.drivers.runs.candidate import Array, Candidate
+from propmdao.components.drivers.evaluation.candidate import Array, Candidate
 
 
 @dataclasses.dataclass(frozen=True)
@@ -39,7 +39,7 @@ class Generation:
 
 
 class SearchStopped(Exception):
-    """Raised by an evaluation to end the search; its message says why."""
+    """Exception of an evaluation that ends the search; its message says why."""
 
 
 class ConstrainedSearch:
@@ -48,11 +48,11 @@ class ConstrainedSearch:
     Parameters
     ----------
     evaluate : callable
-        Takes a list of positions (n_variables,) and yields their candidates in that order, each
-        with at least one violation.
+        Function that takes a list of positions (n_variables,) and yields their candidates in that
+        order, each with at least one violation.
     improved : callable
-        Called with every candidate that is better than all before it and the number of
-        evaluations so far, right after its evaluation.
+        Function that is called with every candidate that is better than all before it and the
+        number of evaluations so far, right after its evaluation.
     progress : tqdm
         Bar that counts the evaluations.
 
@@ -61,7 +61,7 @@ class ConstrainedSearch:
     best : Candidate or None
         Best candidate so far.
     evaluations, failed : int
-        Candidates evaluated, and how many of them failed.
+        Number of candidates evaluated, and number of those that failed.
     last_failure : str
         Reason of the latest failure, empty when there was none.
     history : list of Generation
@@ -92,7 +92,7 @@ class ConstrainedSearch:
         population : (n_candidates, n_variables) array
             Initial positions.
         **scipy_options
-            Options of scipy's ``differential_evolution``: bounds, maxiter, rng, ...
+            Further options of scipy's ``differential_evolution``: bounds, maxiter, rng, ...
 
         Returns
         -------
@@ -123,17 +123,17 @@ class ConstrainedSearch:
         return self.best, ending
 
     def summary(self, ending: str) -> str:
-        """Return one line: what was found, how the search ended, and after how much."""
+        """Return one line on the best candidate, the ending and the number of evaluations."""
         best = self.best
         assert best is not None
         if best.feasible:
-            found = f"best objective {best.objective:.8g}"
+            result = f"best objective {best.objective:.8g}"
         elif best.failure:
-            found = f"every analysis failed, last with: {self.last_failure}"
+            result = f"every analysis failed, last with: {self.last_failure}"
         else:
-            found = f"no feasible design, smallest total violation {best.violation.sum():.3g}"
+            result = f"no feasible design, smallest total violation {best.violation.sum():.3g}"
         return (
-            f"{found}; {ending} after {max(len(self.history) - 1, 0)} generations, "
+            f"{result}; {ending} after {max(len(self.history) - 1, 0)} generations, "
             f"{self.evaluations} designs, {self.failed} of them failed"
         )
 
@@ -182,8 +182,8 @@ class ConstrainedSearch:
 
     def _end_generation(self, intermediate_result: OptimizeResult) -> None:
         # Only members of the population are asked for again.
-        kept = (position.tobytes() for position in intermediate_result.population)
-        self._memo = {key: self._memo[key] for key in kept}
+        members = (position.tobytes() for position in intermediate_result.population)
+        self._memo = {key: self._memo[key] for key in members}
         self._record_generation()
 
     def _record_generation(self) -> None:

@@ -5,14 +5,13 @@ from __future__ import annotations
 import contextlib
 import math
 import time
-from collections.abc import Generator, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import openmdao.api as om
 from openmdao.core.driver import Driver, RecordingDebugging
-from tqdm import tqdm
 
 from propmdao.components.drivers.best_design_file import write_best_design
 from propmdao.components.drivers.checkpoint import Checkpoint
@@ -21,10 +20,15 @@ from propmdao.components.drivers.constrained_search import (
     Generation,
     SearchStopped,
 )
-from propmdao.components.drivers.runs.candidate import Array, Candidate
-from propmdao.components.drivers.runs.design_runs import DesignRuns
-from propmdao.components.drivers.runs.model_run import ModelRun, put_outputs
-from propmdao.components.drivers.runs.model_runner import declare_runner_options, model_runner
+from propmdao.components.drivers.evaluation.candidate import Array, Candidate
+from propmdao.components.drivers.evaluation.design_problem import DesignProblem
+from propmdao.components.drivers.evaluation.model_run import ModelRun, put_outputs
+from propmdao.components.drivers.evaluation.model_runner import (
+    ModelRunner,
+    declare_runner_options,
+    model_runner,
+)
+from propmdao.components.drivers.progress import declare_progress, progress_bar
 from propmdao.components.drivers.search_options import (
     SAMPLERS,
     declare_file_options,
@@ -82,7 +86,7 @@ class DifferentialEvolutionDriver(Driver):
     fail : bool
         True when no feasible design was found.
     message : str
-        Why the search ended.
+        Result of the search in a line, and why it ended.
     """
 
     def __init__(self, **kwargs: Any) -> None:
@@ -101,8 +105,13 @@ class DifferentialEvolutionDriver(Driver):
 
         self.fail = True
         self.message = ""
+        # The state of a run, which `run` makes anew.
         self._search: ConstrainedSearch | None = None
-        self._case_failure = ""
+        self._design_problem: DesignProblem  # from the final model
+        self._checkpoint: Checkpoint | None = None
+        self._runner = ModelRunner(self)
+        self._deadline = math.inf  # of the time budget, on the monotonic clock
+        self._case_failure = ""  # of the case that is recorded
 
     @property
     def history(self) -> list[Generation]:
@@ -123,6 +132,7 @@ class DifferentialEvolutionDriver(Driver):
         declare_search_options(self.options)
         declare_runner_options(self.options)
         declare_file_options(self.options)
+        declare_progress(self.options)
 
     def _get_name(self) -> str:
         return "DifferentialEvolution"
@@ -164,47 +174,44 @@ class DifferentialEvolutionDriver(Driver):
         self._check_for_invalid_desvar_values()
         if not self._designvars:
             raise RuntimeError(f"{self.msginfo} needs a design variable; the model has none")
-        self._runs = DesignRuns(self, self.options["equality_tolerance"])
+        self._design_problem = DesignProblem(self, self.options["equality_tolerance"])
         seed = self.options["seed"]
         self._checkpoint = self._open_checkpoint()
         if self._checkpoint is not None:
             seed = self._checkpoint.seed
         budget = self.options["time_budget"]
         self._deadline = math.inf if budget is None else time.monotonic() + budget
-        with model_runner(self._problem().model, self.options) as self._runner:
+        with model_runner(self) as self._runner:
             return self._run_search(np.random.default_rng(seed))
 
     def _run_search(self, rng: np.random.Generator) -> bool:
         population = self._initial_population(rng)
-        with tqdm(
-            total=len(population) * (self.options["max_gen"] + 1),
-            desc=self._get_name(),
-            unit="design",
-            disable=None if self.options["progress"] else True,
-        ) as progress:
+        most_designs = len(population) * (self.options["max_gen"] + 1)
+        with progress_bar(self, most_designs, "design") as progress:
             search = self._search = ConstrainedSearch(
                 self._evaluate_positions, self._improved, progress
             )
+            # A fixed variable has one position, so that no design is run twice.
+            free = self._design_problem.upper > self._design_problem.lower
             passed_on = ("strategy", "mutation", "recombination", "tol")
             try:
                 best, ending = search.run(
                     population,
-                    # A fixed variable has one position, so that no design is run twice.
-                    bounds=[(0.0, float(free)) for free in self._runs.upper > self._runs.lower],
+                    bounds=[(0.0, float(is_free)) for is_free in free],
                     maxiter=self.options["max_gen"],
                     rng=rng,
                     **{name: self.options[name] for name in passed_on},
                 )
             except (KeyboardInterrupt, WorkerLostError) as error:
                 if search.best is not None:
-                    self._conclude(search.best.design, None)
+                    self._run_here(search.best.design)
                 if self._checkpoint:
                     error.add_note(
                         f"The {search.evaluations} designs evaluated so far are in"
                         f" '{self._checkpoint.path}': run again to go on from there."
                     )
                 raise
-        self._conclude(best.design, None)
+        self._run_here(best.design)
         self.fail = not best.feasible
         self.message = search.summary(ending)
         if self.options["disp"]:
@@ -213,15 +220,15 @@ class DifferentialEvolutionDriver(Driver):
 
     def _initial_population(self, rng: np.random.Generator) -> Array:
         """Return positions in the unit cube (pop_size, n_variables), the current design first."""
-        n_variables = self._runs.lower.size
+        n_variables = self._design_problem.lower.size
         sampler = SAMPLERS[self.options["init"]](n_variables, rng=rng)
         population: Array = sampler.random(self._population_size())
-        population[0] = self._runs.current_position()
+        population[0] = self._design_problem.current_position()
         return population
 
     def _population_size(self) -> int:
         size = self.options["pop_size"] or max(
-            SMALLEST_POPULATION, CANDIDATES_PER_VARIABLE * self._runs.lower.size
+            SMALLEST_POPULATION, CANDIDATES_PER_VARIABLE * self._design_problem.lower.size
         )
         if size < SMALLEST_POPULATION:
             raise ValueError(
@@ -235,13 +242,13 @@ class DifferentialEvolutionDriver(Driver):
         # When to stop is no part of it: a search may be resumed with more generations.
         options = ("seed", "strategy", "init", "mutation", "recombination", "equality_tolerance")
         search = {name: self.options[name] for name in options}
-        search |= {"pop_size": self._population_size(), **self._runs.description()}
+        search |= {"pop_size": self._population_size(), **self._design_problem.description()}
         checkpoint = Checkpoint(self._output_file("checkpoint"), search)
         entry = checkpoint.first_success()
         if entry is not None:
-            self._runs.set_design(np.array(entry["design"]))
+            self._design_problem.set_design(np.array(entry["design"]))
             self._run_solve_nonlinear()
-            checkpoint.require_same_model(entry, self._runs.responses())
+            checkpoint.require_same_model(entry, self._design_problem.responses())
         return checkpoint
 
     def _output_file(self, option: str) -> Path:
@@ -251,48 +258,45 @@ class DifferentialEvolutionDriver(Driver):
         return path
 
     def _evaluate_positions(self, positions: Sequence[Array]) -> Iterator[Candidate]:
-        """Evaluate designs in their order: from the checkpoint, then here or on the workers."""
-        designs = [self._runs.at_position(position) for position in positions]
-        checkpoint = self._checkpoint
-        entries = checkpoint.replay(designs) if checkpoint else []
-        for design, entry in zip(designs, entries, strict=False):
-            outputs = self._runs.outputs_from(design, entry["outputs"])
-            yield self._conclude(design, ModelRun(outputs, entry["failure"]))
-        with contextlib.closing(self._model_runs(designs[len(entries) :])) as runs:
-            for design in designs[len(entries) :]:
+        """Evaluate designs in their order: those of the checkpoint, then the new ones."""
+        designs = [self._design_problem.at_position(position) for position in positions]
+        entries = self._checkpoint.replay(designs) if self._checkpoint else []
+        replayed, new = designs[: len(entries)], designs[len(entries) :]
+        runs_then = self._replay(replayed, entries)
+        for design in replayed:
+            yield self._next_case(design, runs_then)
+        with contextlib.closing(self._runner.run(map(self._design_problem.start_at, new))) as runs:
+            for design in new:
                 if time.monotonic() > self._deadline and self.iter_count > 0:
                     raise SearchStopped("stopped at the end of its time budget")
-                candidate = self._conclude(design, next(runs))
-                if checkpoint:
-                    responses = {} if candidate.failure else self._runs.responses()
-                    checkpoint.append(design, candidate.failure, responses)
+                candidate = self._next_case(design, runs)
+                if self._checkpoint:
+                    responses = {} if candidate.failure else self._design_problem.responses()
+                    self._checkpoint.append(design, candidate.failure, responses)
                 yield candidate
 
-    def _model_runs(self, designs: list[Array]) -> Generator[ModelRun | None, None, None]:
-        """Runs at designs, or as many None: to be run here, one after the other."""
-        if self._runner is None:
-            yield from [None] * len(designs)
-        else:
-            for run in self._runner.run(map(self._runs.start_at, designs)):
-                if run.error is not None:
-                    raise run.error
-                self.result.model_evals += not run.failure  # as OpenMDAO counts runs here
-                yield run
+    def _replay(
+        self, designs: Sequence[Array], entries: Sequence[dict[str, Any]]
+    ) -> Iterator[ModelRun]:
+        """Runs as the checkpoint tells of them; the model is left as each of them left it."""
+        for design, entry in zip(designs, entries, strict=True):
+            outputs = self._design_problem.outputs_from(design, entry["outputs"])
+            put_outputs(self._problem().model, outputs)
+            yield ModelRun(outputs, entry["failure"])
 
-    def _conclude(self, design: Array, run: ModelRun | None) -> Candidate:
-        """Have the model run, here or from a run elsewhere, and read it; one driver case."""
-        self._runs.set_design(design)
+    def _run_here(self, design: Array) -> None:
+        """Run the model of the Problem at a design and leave it there."""
+        self._next_case(design, ModelRunner(self).run([self._design_problem.start_at(design)]))
+
+    def _next_case(self, design: Array, runs: Iterator[ModelRun]) -> Candidate:
+        """Take the next run, which is the one at the design, and read it: one driver case."""
+        self._design_problem.set_design(design)  # which debug_print shows before the run
+        self._case_failure = "not finished"  # of an interrupted case
         with RecordingDebugging(self._get_name(), self.iter_count, self):
-            try:
-                if run is None:
-                    self._run_solve_nonlinear()
-                else:
-                    put_outputs(self._problem().model, run.outputs)
-                    if run.failure:
-                        raise om.AnalysisError(run.failure)
-                candidate = self._runs.read(design)
-            except om.AnalysisError as error:
-                candidate = self._runs.failed(design, error)
+            run = next(runs)
+            if run.error is not None:
+                raise run.error
+            candidate = self._design_problem.candidate(design, run.failure)
             self._case_failure = candidate.failure
         self.iter_count += 1
         return candidate

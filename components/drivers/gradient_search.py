@@ -1,4 +1,4 @@
-"""A search by derivatives: SLSQP of SciPy, as OpenMDAO runs it, with what it tried and cost."""
+"""A search by derivatives: SLSQP of SciPy, as OpenMDAO runs it, with its history and cost."""
 
 from __future__ import annotations
 
@@ -12,16 +12,17 @@ from propmdao.components.drivers.search_history import SearchHistory, read_histo
 
 
 class Search(NamedTuple):
-    """How a design was found.
+    """A search for a design: what it tried and how long it took.
 
     Attributes
     ----------
     history : SearchHistory
-        Designs tried.
+        Designs that the search has tried.
     seconds : float
-        For these.
+        Time for these designs and their derivatives [s].
     compiling : float
-        Before, for the first analysis and the first derivatives: nearly all of it compiles.
+        Time before, for the first analysis and the first derivatives [s]; nearly all of it
+        compiles.
     """
 
     history: SearchHistory
@@ -32,7 +33,7 @@ class Search(NamedTuple):
 def run_slsqp(
     prob: om.Problem, file: str | os.PathLike[str], tolerance: float = 1e-5, iterations: int = 100
 ) -> Search:
-    """Leave the optimum in a problem and say how it was found.
+    """Search with SLSQP, and leave the optimum in the problem.
 
     SLSQP holds vector and two-sided constraints, and never leaves the bounds of the variables. It
     starts from a unit matrix for the curvature: scale variables by ``ref`` so that they change by
@@ -42,14 +43,15 @@ def run_slsqp(
     Parameters
     ----------
     prob : om.Problem
-        After ``setup``, with design variables, constraints and one objective; the start is what it
-        holds.
+        Problem after ``setup``, with design variables, constraints and one objective. The search
+        starts from the values that it holds.
     file : path
-        Where the cases are recorded; an earlier file is replaced.
+        File in which the cases are recorded; an earlier one is replaced.
     tolerance : float
-        In the scaled objective and the sum of the scaled constraints, that ends the search.
+        Change of the scaled objective, and sum of the scaled violations, that end the search.
     iterations : int
-        Most iterations, each of which costs one set of derivatives and mostly one analysis.
+        Largest number of iterations, each of which costs one set of derivatives and mostly one
+        analysis.
 
     Returns
     -------

@@ -1,14 +1,15 @@
-"""What a driver has tried, from the cases that it recorded."""
+"""The designs that a driver has tried, from the cases that it recorded."""
 
 from __future__ import annotations
 
 import dataclasses
 import os
+from typing import NamedTuple
 
 import numpy as np
 import openmdao.api as om
 
-from propmdao.components.drivers.runs.candidate import Array, constraint_violations
+from propmdao.components.drivers.evaluation.candidate import Array, constraint_violations
 
 
 @dataclasses.dataclass(frozen=True)
@@ -18,12 +19,13 @@ class SearchHistory:
     Attributes
     ----------
     objective : (n_evaluations,) array
-        In its declared units; nan where the analysis failed.
+        Objective in its declared units; nan where the analysis failed.
     violation : (n_evaluations,) array
         Largest violation of a constraint in driver scaling, 0 where all hold; infinite where the
         analysis failed.
     constraint : (n_evaluations,) list of str
-        Which constraint that is, empty where all hold.
+        Name of the constraint that is violated most, empty where all hold; the reason where the
+        analysis failed.
     """
 
     objective: Array
@@ -31,27 +33,36 @@ class SearchHistory:
     constraint: list[str]
 
 
+class _Trial(NamedTuple):
+    """One design of a `SearchHistory`."""
+
+    objective: float
+    violation: float
+    constraint: str
+
+
 def read_history(prob: om.Problem, file: str | os.PathLike[str]) -> SearchHistory:
-    """Read what the driver of a problem has recorded.
+    """Read the cases that the driver of a problem has recorded.
 
     Parameters
     ----------
     prob : om.Problem
-        After ``run_driver`` and ``cleanup``, with one objective. Its driver had a recorder.
+        Problem after ``run_driver`` and ``cleanup``, with one objective. Its driver had a recorder.
     file : path
-        The recorder's file.
+        File of the recorder.
 
     Returns
     -------
     SearchHistory
-        A row for each run of the model. OpenMDAO's SLSQP starts with two runs of the same design.
+        History with an entry for each run of the model. OpenMDAO's SLSQP starts with two runs of
+        the same design.
     """
     (objective,) = prob.driver._objs.values()
     constraints = prob.driver._cons
-    rows = []
+    trials = []
     for case in om.CaseReader(os.fspath(file)).get_cases("driver"):
         if not case.success:
-            rows.append((np.nan, np.inf, case.msg))
+            trials.append(_Trial(np.nan, np.inf, case.msg))
             continue
         by_name = {
             name: float(constraint_violations(
@@ -62,6 +73,10 @@ def read_history(prob: om.Problem, file: str | os.PathLike[str]) -> SearchHistor
         worst = max(by_name, key=by_name.__getitem__)
         value = case.get_val(objective["name"], units=objective["units"])
         violation = by_name[worst]
-        rows.append((float(value.ravel()[0]), violation, worst if violation > 0.0 else ""))
-    values, violations, names = zip(*rows, strict=True)
-    return SearchHistory(np.array(values), np.array(violations), list(names))
+        violated = worst if violation > 0.0 else ""
+        trials.append(_Trial(float(value.ravel()[0]), violation, violated))
+    return SearchHistory(
+        objective=np.array([trial.objective for trial in trials]),
+        violation=np.array([trial.violation for trial in trials]),
+        constraint=[trial.constraint for trial in trials],
+    )

@@ -1,4 +1,4 @@
-"""Options of a search: how, when it ends, what is written."""
+"""Options of a search: how it searches, when it ends, what it writes."""
 
 from __future__ import annotations
 
@@ -16,10 +16,16 @@ SAMPLERS = {"latinhypercube": qmc.LatinHypercube, "sobol": qmc.Sobol, "halton": 
 
 
 def declare_search_options(options: OptionsDictionary) -> None:
-    """Declare what determines the search and when it ends."""
+    """Declare the options that determine the search and its end."""
     declare = options.declare
-    declare("max_gen", 100, types=int, lower=0, desc="Generations after the initial one.")
-    declare("pop_size", 0, types=int, lower=0, desc="Designs per generation; 0: 15 a variable.")
+    declare("max_gen", 100, types=int, lower=0, desc="Number of generations after the initial one.")
+    declare(
+        "pop_size",
+        0,
+        types=int,
+        lower=0,
+        desc="Number of designs per generation; 0: 15 a variable.",
+    )
     declare(
         "tol",
         1e-3,
@@ -35,14 +41,27 @@ def declare_search_options(options: OptionsDictionary) -> None:
         lower=0.0,
         desc="Seconds after which no further design is evaluated; None: no limit.",
     )
-    declare("seed", None, types=int, allow_none=True, desc="Same seed, same search.")
-    declare("strategy", "best1bin", values=STRATEGIES, desc="Mutation and crossover.")
-    declare("init", "latinhypercube", values=tuple(SAMPLERS), desc="Initial population.")
+    declare(
+        "seed",
+        None,
+        types=int,
+        allow_none=True,
+        desc="Seed of random numbers: same seed, same search.",
+    )
+    declare(
+        "strategy",
+        "best1bin",
+        values=STRATEGIES,
+        desc="Strategy of mutation and crossover, as SciPy names it.",
+    )
+    declare(
+        "init", "latinhypercube", values=tuple(SAMPLERS), desc="Sampler of the initial population."
+    )
     declare(
         "mutation",
         (0.5, 1.0),
         types=(float, tuple),
-        desc="Differential weight in [0, 2); of a pair each generation draws one in between.",
+        desc="Differential weight in [0, 2); from a pair each generation draws one in between.",
     )
     declare("recombination", 0.7, lower=0.0, upper=1.0, desc="Crossover probability.")
     declare(
@@ -54,7 +73,7 @@ def declare_search_options(options: OptionsDictionary) -> None:
 
 
 def declare_file_options(options: OptionsDictionary) -> None:
-    """Declare what is written and shown."""
+    """Declare the options of the files that are written and of what is printed."""
     declare = options.declare
     path = {"types": (str, os.PathLike), "allow_none": True}
     declare(
@@ -71,5 +90,4 @@ def declare_file_options(options: OptionsDictionary) -> None:
         desc="File to which every evaluated design is added, and from which the search goes on "
         "where there is one; a relative path as of best_file; None: no file.",
     )
-    declare("progress", True, types=bool, desc="Progress bar on stderr, if it is a terminal.")
     declare("disp", True, types=bool, desc="Print a summary at the end.")

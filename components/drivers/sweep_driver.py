@@ -4,22 +4,21 @@ from __future__ import annotations
 
 import contextlib
 import os
-from collections.abc import Generator
 from typing import Any
 
 import numpy as np
 import openmdao.api as om
 from openmdao.core.driver import RecordingDebugging
-from tqdm import tqdm
 
-from propmdao.components.drivers.checkpoint import SAME_MODEL
-from propmdao.components.drivers.runs.candidate import Array
-from propmdao.components.drivers.runs.model_run import put_outputs, said
-from propmdao.components.drivers.runs.model_runner import (
+from propmdao.components.drivers.evaluation.candidate import Array
+from propmdao.components.drivers.evaluation.model_run import ModelRun
+from propmdao.components.drivers.evaluation.model_runner import (
     ModelRunner,
     declare_runner_options,
     model_runner,
 )
+from propmdao.components.drivers.progress import declare_progress, progress_bar
+from propmdao.components.drivers.same_model import require_same_results
 from propmdao.formats.result_table import ResultTable, Value, table_files
 
 Sample = dict[str, dict[str, Any]]
@@ -28,14 +27,15 @@ Sample = dict[str, dict[str, Any]]
 class SweepDriver(om.AnalysisDriver):
     """Runs the model at every sample of OpenMDAO's generators, into a table that is gone on with.
 
-    What it adds to ``om.AnalysisDriver``, whose samples, responses and recorder it keeps:
+    It keeps the samples, responses and recorder of ``om.AnalysisDriver`` and adds:
 
     - A CSV file with a row per sample: its values, the responses (``add_responses``, as well as
       objectives and constraints of the model), ``status`` and the ``reason`` of a failure. Elements
       of arrays are columns ``name[0]``, ``name[1]`` and so on, in the units of the sample and of
       the response.
     - Samples that the table has are not run again, so a sweep that was interrupted or killed goes
-      on, and one with more samples adds these. One of them is, to see that the model is the same.
+      on, and one with more samples adds these. One that it has is run to see that the model is
+      still the same.
     - Every run starts from the output values that the model held when the driver started, so that
       no row depends on the one before it; and the samples may run on workers, or several at once.
 
@@ -44,8 +44,8 @@ class SweepDriver(om.AnalysisDriver):
     Parameters
     ----------
     samples : list, tuple or AnalysisGenerator
-        As of ``om.AnalysisDriver``: dictionaries ``{name: {"val": ..., "units": ...}}``, or a
-        generator that makes them.
+        Dictionaries ``{name: {"val": ..., "units": ...}}``, or a generator that makes them, as
+        ``om.AnalysisDriver`` takes them.
     **kwargs : dict
         Values of the options.
 
@@ -59,19 +59,18 @@ class SweepDriver(om.AnalysisDriver):
         super().__init__(samples, **kwargs)
         self._name = "SweepDriver"
         self.failures: list[str] = []
+        self._initial: Array = np.empty(0)  # values of all outputs that every run starts from
 
     def _declare_options(self) -> None:
         super()._declare_options()
         declare_runner_options(self.options)
+        declare_progress(self.options)
         self.options.declare(
             "table",
             "sweep.csv",
             types=(str, os.PathLike),
             desc="Table, .csv, or .parquet, which is written at the end beside the .csv of that "
             "name; a relative path lies in the Problem's outputs directory.",
-        )
-        self.options.declare(
-            "progress", True, types=bool, desc="Progress bar on stderr, if it is a terminal."
         )
 
     def run(self) -> bool:
@@ -94,23 +93,20 @@ class SweepDriver(om.AnalysisDriver):
         self._require_same_model(table, samples, points)
         missing = table.missing(points)
         with (
-            model_runner(self._problem().model, self.options) as runner,
+            model_runner(self) as runner,
             contextlib.closing(
-                self._runs([samples[place] for place in missing], runner)
-            ) as reasons,
+                runner.run(self._start_at(samples[place]) for place in missing)
+            ) as runs,
+            progress_bar(self, len(missing), "sample") as progress,
         ):
-            silent = None if self.options["progress"] else True
-            for place in tqdm(missing, desc=self._name, unit="sample", disable=silent):
+            for place in missing:
                 self._metadata = {"success": 0, "msg": "not finished"}  # of an interrupted case
                 with RecordingDebugging(self._get_name(), self.iter_count, self):
-                    reason = next(reasons)
-                    results = self._results()
-                    if not reason:
-                        nans = [name for name, value in results.items() if np.isnan(value)]
-                        reason = f"{', '.join(nans)} is nan" if nans else ""
+                    reason = self._reason(next(runs))
                     self._metadata = {"success": int(not reason), "msg": reason}
                 self.iter_count += 1
-                table.add(points[place], {} if reason else results, reason)
+                table.add(points[place], {} if reason else self._results(), reason)
+                progress.update()
         if parquet_file is not None:
             table.write_parquet(parquet_file)
         self.failures = table.failures(points)
@@ -146,14 +142,9 @@ class SweepDriver(om.AnalysisDriver):
         for sample, point in zip(samples, points, strict=True):
             if point not in table or table.row(point)["status"] != "ok":
                 continue
-            next(self._runs([sample], None))
-            for name, now in self._results().items():
-                then = float(table.row(point)[name])
-                if not np.isclose(now, then, rtol=SAME_MODEL, atol=0.0):
-                    raise ValueError(
-                        f"'{table.path}' is of another model: at {point} {name} was {then:.10g}"
-                        f" and is {now:.10g}; name another file, or delete it to start anew"
-                    )
+            next(ModelRunner(self).run([self._start_at(sample)]))
+            known = {name: float(table.row(point)[name]) for name in self._results()}
+            require_same_results(f"'{table.path}'", str(point), known, self._results())
             return
 
     def _outputs(self) -> Any:
@@ -169,39 +160,23 @@ class SweepDriver(om.AnalysisDriver):
             raise ValueError(f"{self.msginfo} needs a response; add_responses names them")
         return _columns(values)
 
-    def _runs(
-        self, samples: list[Sample], runner: ModelRunner | None
-    ) -> Generator[str, None, None]:
-        """Run samples and yield why they failed; the model is left as each of them leaves it."""
+    def _start_at(self, sample: Sample) -> Array:
+        """Values of all outputs before a run at a sample; the model is left so."""
         model, outputs = self._problem().model, self._outputs()
+        outputs.set_val(self._initial)
+        for name, meta in sample.items():
+            model.set_val(name, meta["val"], meta.get("units"), meta.get("indices"))
+        values: Array = outputs.asarray(copy=True)
+        return values
 
-        def start(sample: Sample) -> Array:
-            outputs.set_val(self._initial)
-            for name, meta in sample.items():
-                model.set_val(name, meta["val"], meta.get("units"), meta.get("indices"))
-            values: Array = outputs.asarray(copy=True)
-            return values
-
-        if runner is not None:
-            for run in runner.run(map(start, samples)):
-                put_outputs(model, run.outputs)
-                self.result.model_evals += run.error is None and not run.failure
-                yield run.failure or (_with_type(run.error) if run.error else "")
-            return
-        for sample in samples:
-            start(sample)
-            reason = ""
-            try:
-                self._run_solve_nonlinear()
-            except om.AnalysisError as error:
-                reason = said(error)
-            except Exception as error:  # as om.AnalysisDriver: a survey does not end at a sample
-                reason = _with_type(error)
-            yield reason
-
-
-def _with_type(error: Exception) -> str:
-    return f"{type(error).__name__}: {error}"
+    def _reason(self, run: ModelRun) -> str:
+        """Reason why the run that the model comes from has failed, empty when it has not."""
+        if run.error is not None:  # as om.AnalysisDriver: a survey does not end at a sample
+            return f"{type(run.error).__name__}: {run.error}"
+        if run.failure:
+            return run.failure
+        nans = [name for name, value in self._results().items() if np.isnan(value)]
+        return f"{', '.join(nans)} is nan" if nans else ""
 
 
 def _point(sample: Sample) -> dict[str, Value]:

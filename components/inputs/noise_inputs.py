@@ -8,19 +8,19 @@ import numpy as np
 import openmdao.api as om
 
 from propmdao.acoustics.kinematics.limits import require_outside_rotor, require_subsonic_tip
-from propmdao.components.bases.jax_component import Arrays
-from propmdao.components.bases.nodes_comp import STATIC, OperatingPointsComp
+from propmdao.components.bases.array_function import Arrays
+from propmdao.components.bases.nodes_comp import STATIC, NodesComp
 from propmdao.components.inputs.point_inputs import add_point_inputs, state_at
 from propmdao.records.states import RotorState
 from propmdao.records.units import RAD_PER_S
 
 
-def add_noise_inputs(component: OperatingPointsComp, observers: np.ndarray) -> None:
+def add_noise_inputs(component: NodesComp, observers: np.ndarray) -> None:
     """Declare the inputs that `noise_state` reads, and the observers.
 
     Parameters
     ----------
-    component : OperatingPointsComp
+    component : NodesComp
         Component in its ``setup``.
     observers : (n_observers, 3) array
         Initial positions [m].

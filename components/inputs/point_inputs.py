@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import Any
 
-from propmdao.components.bases.jax_component import Arrays
-from propmdao.components.bases.nodes_comp import OperatingPointsComp
+from propmdao.components.bases.array_function import Arrays
+from propmdao.components.bases.nodes_comp import NodesComp
 from propmdao.records.air import Air
 from propmdao.records.quantities import AIR, ASKED
 from propmdao.records.states import RotorState
@@ -15,12 +15,12 @@ from propmdao.records.states import RotorState
 AIR_INPUTS = tuple(name for name, quantity in ASKED.items() if quantity.record == AIR)
 
 
-def add_point_inputs(component: OperatingPointsComp, names: Iterable[str]) -> None:
+def add_point_inputs(component: NodesComp, names: Iterable[str]) -> None:
     """Declare inputs of the operating point as the table of quantities has them.
 
     Parameters
     ----------
-    component : OperatingPointsComp
+    component : NodesComp
         Component in its ``setup``.
     names : iterable of str
         Names in the table.

@@ -15,8 +15,8 @@ from propmdao.aerodynamics.sections.polars.family import SectionPolars
 from propmdao.aerodynamics.sections.polars.table import PolarTable
 from propmdao.aerodynamics.solutions.case import RotorCase
 from propmdao.aerodynamics.wakes.helical import WakeTransport, wake_transport
-from propmdao.components.bases.jax_component import Arrays
-from propmdao.components.bases.nodes_comp import STATIC, OperatingPointsComp
+from propmdao.components.bases.array_function import Arrays
+from propmdao.components.bases.nodes_comp import STATIC, NodesComp
 from propmdao.components.inputs.point_inputs import add_point_inputs, state_at
 from propmdao.records.fidelity import Fidelity
 from propmdao.records.pytrees import record
@@ -58,12 +58,12 @@ def declare_rotor(options: OptionsDictionary) -> None:
     options.declare("wake", WakeLaw(), types=WakeLaw, desc="How the prescribed wake moves.")
 
 
-def add_rotor_inputs(component: OperatingPointsComp) -> RotorConstants:
+def add_rotor_inputs(component: NodesComp) -> RotorConstants:
     """Declare the inputs that `rotor_at` reads.
 
     Parameters
     ----------
-    component : OperatingPointsComp
+    component : NodesComp
         Component in its ``setup``.
 
     Returns

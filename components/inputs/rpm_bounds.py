@@ -5,7 +5,7 @@ from __future__ import annotations
 from openmdao.utils.options_dictionary import OptionsDictionary
 
 from propmdao.aerodynamics.trim import Bounds, rotation_bounds
-from propmdao.components.bases.jax_component import Arrays
+from propmdao.components.bases.array_function import Arrays
 from propmdao.records.units import RAD_PER_S
 
 

@@ -1,1 +1,1 @@
-"""What the program runs on: JAX and its settings, compiled code, worker processes."""
+"""Ground that the program runs on: JAX and its settings, compiled code, worker processes."""

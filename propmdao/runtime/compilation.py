@@ -36,9 +36,9 @@ def compiled(
     Parameters
     ----------
     function : callable
-        Of arrays; a decorator's.
+        Function of arrays that is decorated.
     static_argnums, static_argnames
-        As ``jax.jit`` takes them.
+        Arguments that are compiled in, as ``jax.jit`` takes them.
 
     Returns
     -------
@@ -46,7 +46,7 @@ def compiled(
         The function, compiled when it is called.
     """
     static: dict[str, Any] = {"static_argnums": static_argnums, "static_argnames": static_argnames}
-    within = jax.jit(function, **static)
+    as_part = jax.jit(function, **static)
 
     @cache
     def alone() -> Callable[_Parameters, _Result]:
@@ -54,7 +54,7 @@ def compiled(
 
     @wraps(function)
     def call(*args: _Parameters.args, **kwargs: _Parameters.kwargs) -> _Result:
-        return (alone() if _place_in_traces() == _OUTSIDE else within)(*args, **kwargs)
+        return (alone() if _place_in_traces() == _OUTSIDE else as_part)(*args, **kwargs)
 
     return call
 

@@ -57,6 +57,8 @@ def use_one_thread() -> None:
     each wait for one another. It has to be called before JAX computes anything.
     """
     os.environ["PJRT_NPROC"] = "1"  # XLA's thread pools; read when JAX first computes
+    import propmdao.runtime.jax_setup  # noqa: F401 - loads BLAS: only what is loaded has its limit
+
     threadpoolctl.threadpool_limits(1)
 
 
@@ -70,26 +72,27 @@ def results_in_order(
     Parameters
     ----------
     executor : concurrent.futures.Executor
-        Where the function runs.
+        Executor on which the function runs.
     function : callable
-        Must not raise: it returns its errors, so that what is raised here is lost workers.
+        Function that must not raise: it returns its errors, so that what is raised here is lost
+        workers.
     arguments : iterable
-        One for each call.
+        Argument of each call.
 
     Yields
     ------
     object
-        What the function returns, in the order of the arguments.
+        Results of the function in the order of the arguments.
 
     Raises
     ------
     WorkerLostError
         When the executor gives no result.
     """
-    asked = list(arguments)
+    tasks = list(arguments)  # first: an error of theirs is no lost worker
     futures: list[Future[Result]] = []
     try:
-        futures.extend(executor.submit(function, argument) for argument in asked)
+        futures.extend(executor.submit(function, task) for task in tasks)
         for future in futures:
             yield future.result()
     except Exception as error:

@@ -39,10 +39,10 @@ def test_equal_levels_give_that_level(exponent):
 
 def test_it_rises_to_the_maximum_with_the_exponent():
     exponent = np.array([1.0, 2.0, 4.0, 8.0, 16.0, 1e3, 1e6])
-    found = np.array([soft_maximum(LEVELS, exponent=p) for p in exponent])
-    assert (np.diff(found) > 0.0).all()
-    assert (LEVELS.max() - found <= 10.0 * np.log10(LEVELS.size) / exponent + 1e-9).all()
-    assert_allclose(found[-1], LEVELS.max(), atol=1e-5)
+    levels = np.array([soft_maximum(LEVELS, exponent=p) for p in exponent])
+    assert (np.diff(levels) > 0.0).all()
+    assert (LEVELS.max() - levels <= 10.0 * np.log10(LEVELS.size) / exponent + 1e-9).all()
+    assert_allclose(levels[-1], LEVELS.max(), atol=1e-5)
 
 
 def test_adding_a_decibel_to_all_adds_a_decibel():

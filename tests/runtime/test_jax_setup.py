@@ -1,4 +1,4 @@
-"""Importing propmdao sets JAX up, leaves the user's choices alone and prints nothing."""
+"""Importing what computes sets JAX up, leaves the user's choices alone and prints nothing."""
 
 from __future__ import annotations
 
@@ -10,13 +10,13 @@ from pathlib import Path
 import pytest
 
 CODE = """
-import propmdao, jax, jax.numpy as jnp
+import propmdao.{room}, jax, jax.numpy as jnp
 print(jnp.ones(1).dtype, jax.config.values["jax_compilation_cache_dir"])
 jax.jit(lambda x: jnp.linalg.solve(x, x))(jnp.eye(3) + 1.0).block_until_ready()
 """
 
 
-def import_propmdao(**environment: str | Path) -> tuple[str, str]:
+def import_room(room: str = "aerodynamics", **environment: str | Path) -> tuple[str, str]:
     """Float type and cache folder after the import, in a process of its own that compiles once."""
     surroundings = {
         key: value
@@ -24,7 +24,7 @@ def import_propmdao(**environment: str | Path) -> tuple[str, str]:
         if not key.startswith("JAX_") and key != "XDG_CACHE_HOME"
     }
     result = subprocess.run(
-        [sys.executable, "-c", CODE],
+        [sys.executable, "-c", CODE.format(room=room)],
         env=surroundings | {key: str(value) for key, value in environment.items()},
         capture_output=True,
         text=True,
@@ -37,31 +37,36 @@ def import_propmdao(**environment: str | Path) -> tuple[str, str]:
 
 @pytest.mark.skipif(sys.platform != "linux", reason="the cache's place is that of Linux")
 def test_compiled_code_is_kept_and_read_back_without_a_word(tmp_path: Path) -> None:
-    dtype, folder = import_propmdao(XDG_CACHE_HOME=tmp_path)
+    dtype, folder = import_room(XDG_CACHE_HOME=tmp_path)
     assert dtype == "float64"
     assert Path(folder) == tmp_path / "propmdao" / "jax"
-    kept = sorted(Path(folder).iterdir())
-    assert kept
-    import_propmdao(XDG_CACHE_HOME=tmp_path)
-    assert sorted(Path(folder).iterdir()) == kept
+    entries = sorted(Path(folder).iterdir())
+    assert entries
+    import_room(XDG_CACHE_HOME=tmp_path)
+    assert sorted(Path(folder).iterdir()) == entries
 
 
 def test_an_unusable_home_keeps_nothing_and_says_nothing(tmp_path: Path) -> None:
     (tmp_path / "file").touch()
     unusable = tmp_path / "file" / "home"
-    assert import_propmdao(HOME=unusable, XDG_CACHE_HOME=unusable)[1] == "None"
+    assert import_room(HOME=unusable, XDG_CACHE_HOME=unusable)[1] == "None"
 
 
 def test_the_users_own_cache_stays(tmp_path: Path) -> None:
-    _, folder = import_propmdao(JAX_COMPILATION_CACHE_DIR=tmp_path / "mine")
+    _, folder = import_room(JAX_COMPILATION_CACHE_DIR=tmp_path / "mine")
     assert Path(folder) == tmp_path / "mine"
 
 
+@pytest.mark.parametrize("room", ["acoustics", "geometry", "records.pytrees"])
+def test_whichever_room_is_imported_first(tmp_path: Path, room: str) -> None:
+    assert import_room(room, XDG_CACHE_HOME=tmp_path)[0] == "float64"
+
+
 def test_a_cache_entry_cut_short_costs_no_more_than_compiling(tmp_path: Path) -> None:
-    _, folder = import_propmdao(XDG_CACHE_HOME=tmp_path)
+    _, folder = import_room(XDG_CACHE_HOME=tmp_path)
     for entry in Path(folder).iterdir():
         entry.write_bytes(entry.read_bytes()[:20])
-    import_propmdao(XDG_CACHE_HOME=tmp_path)
+    import_room(XDG_CACHE_HOME=tmp_path)
 
 
 def test_only_the_blas_that_jax_factorises_with_loses_its_threads() -> None:
@@ -73,7 +78,7 @@ def threads():
         for library in threadpoolctl.threadpool_info()
     }
 before = threads()
-import propmdao
+import propmdao.runtime.jax_setup
 if {"scipy.libs", "numpy.libs"} <= set(before):
     assert threads() == before | {"scipy.libs": 1}, (before, threads())
 else:

@@ -12,8 +12,8 @@ from numpy.testing import assert_allclose
 from propmdao.acoustics.kinematics.observers import arc
 from propmdao.components import DifferentialEvolutionDriver, PropellerGroup, SweepDriver
 from propmdao.components.bases.jax_component import JaxComponent
-from propmdao.components.bases.nodes_comp import OperatingPointsComp
-from propmdao.components.drivers.runs.design_batches import DesignBatches
+from propmdao.components.bases.nodes_comp import NodesComp
+from propmdao.components.drivers.evaluation.design_batches import DesignBatches
 
 ROUNDING = 1e-9  # of sums in another order, and searches that end a step earlier or later
 
@@ -50,7 +50,7 @@ class Scaled(om.ExplicitComponent):
         outputs["h"] = 2.0 * inputs["g"]
 
 
-class Square(OperatingPointsComp):
+class Square(NodesComp):
     """y = x^2 at every node; it fails where x > 2 and rests at 0."""
 
     def setup(self):
@@ -192,10 +192,10 @@ def test_a_sweep_has_the_same_rows(tmp_path):
         prob.run_driver()
         with path.open(newline="") as file:
             rows.append(list(csv.DictReader(file)))
-    for one, other in zip(*rows, strict=True):
-        assert (one["status"], one["reason"]) == (other["status"], other["reason"])
-        if one["status"] == "ok":
-            assert_allclose(float(other["f"]), float(one["f"]), rtol=1e-13)
+    for single, batched in zip(*rows, strict=True):
+        assert (single["status"], single["reason"]) == (batched["status"], batched["reason"])
+        if single["status"] == "ok":
+            assert_allclose(float(batched["f"]), float(single["f"]), rtol=1e-13)
     assert {row["status"] for row in rows[0]} == {"ok", "failed"}
 
 

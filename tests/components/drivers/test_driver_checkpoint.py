@@ -1,7 +1,6 @@
 """The checkpoint: a search resumed after whatever ended it is the search that was not ended."""
 
 import functools
-import importlib
 import json
 import os
 import signal
@@ -15,12 +14,6 @@ import openmdao.api as om
 import pytest
 
 SCRIPT = Path(__file__).parent / "worker_models.py"
-
-
-@pytest.fixture
-def models(monkeypatch):
-    monkeypatch.syspath_prepend(Path(__file__).parent)
-    return importlib.import_module("worker_models")
 
 
 @pytest.fixture
@@ -99,9 +92,9 @@ def test_more_generations_go_on_from_the_end(models, finished):
     _, path = finished
     straight = models.problem(max_gen=14)
     straight.run_driver()
-    further = resume(models, path, max_gen=14)
-    assert further.driver.history == straight.driver.history
-    assert further.get_val("x").tolist() == straight.get_val("x").tolist()
+    longer = resume(models, path, max_gen=14)
+    assert longer.driver.history == straight.driver.history
+    assert longer.get_val("x").tolist() == straight.get_val("x").tolist()
 
 
 def test_without_a_seed_the_checkpoint_remembers_the_one_that_was_drawn(models, tmp_path):
@@ -150,12 +143,12 @@ def test_recorded_cases_are_whole_after_a_resume(models, finished, tmp_path):
     cut(path, 30)
     resumed = cases(models.problem(checkpoint=path), "resumed.sql")
     assert len(resumed) == len(straight)
-    for then, now in zip(straight, resumed, strict=True):
-        assert now.success == then.success and now.msg == then.msg
-        assert now["x"].tolist() == then["x"].tolist()
-        assert now["radius"] == then["radius"]
-        if then.success:
-            assert now["f"] == then["f"] and now["g"].tolist() == then["g"].tolist()
+    for before, after in zip(straight, resumed, strict=True):
+        assert after.success == before.success and after.msg == before.msg
+        assert after["x"].tolist() == before["x"].tolist()
+        assert after["radius"] == before["radius"]
+        if before.success:
+            assert after["f"] == before["f"] and after["g"].tolist() == before["g"].tolist()
     failed = next(case for case in resumed if not case.success)
     assert np.isnan(failed["f"]).all()
 
@@ -193,15 +186,15 @@ def test_one_changed_digit_is_found(models, finished, n_line):
 
 
 @pytest.mark.parametrize(
-    ("options", "said"),
+    ("options", "reason"),
     [
         ({"seed": 5}, "seed is 4 there and 5 here"),
         ({"pop_size": 9}, "pop_size is 8 there and 9 here"),
         ({"strategy": "rand1bin"}, "strategy is best1bin there and rand1bin here"),
     ],
 )
-def test_other_options_are_refused(models, finished, options, said):
-    with pytest.raises(ValueError, match=f"of another search: {said}"):
+def test_other_options_are_refused(models, finished, options, reason):
+    with pytest.raises(ValueError, match=f"of another search: {reason}"):
         resume(models, finished[1], **options)
 
 

@@ -1,27 +1,18 @@
 """The driver on workers: the same search as without, and what becomes of their errors."""
 
 import functools
-import importlib
 import os
 import subprocess
 import sys
 from concurrent.futures import ThreadPoolExecutor
-from pathlib import Path
 
 import numpy as np
 import openmdao.api as om
 import pytest
 
 from propmdao.components import DifferentialEvolutionDriver
-from propmdao.components.drivers.runs.model_run import put_outputs
+from propmdao.components.drivers.evaluation.model_run import put_outputs
 from propmdao.runtime.worker_processes import WorkerLostError
-
-
-@pytest.fixture
-def models(monkeypatch):
-    """The module of models; workers find it by the path that they inherit."""
-    monkeypatch.syspath_prepend(Path(__file__).parent)
-    return importlib.import_module("worker_models")
 
 
 @pytest.fixture
@@ -139,10 +130,10 @@ def test_what_a_run_elsewhere_has_left_reaches_every_input():
     prob.setup()
     prob.run_model()
     left = prob.model.get_nonlinear_vectors()[1].asarray(copy=True)
-    there = prob.model.feet._inputs["h"].copy()
+    expected = prob.model.feet._inputs["h"].copy()
     prob.model.feet._inputs["h"] = 0.0
     put_outputs(prob.model, left)
-    assert prob.model.feet._inputs["h"] == there
+    assert prob.model.feet._inputs["h"] == expected
 
 
 def test_options_of_a_wrong_type_are_refused():
@@ -163,8 +154,8 @@ def test_a_worker_that_dies_ends_the_run_and_a_second_run_ends_as_if_it_had_not(
     prob = models.problem(deadly, n_workers=2, checkpoint=tmp_path / "checkpoint")
     with pytest.raises(WorkerLostError, match="a worker ended without a result") as raised:
         prob.run_driver()
-    known = len((tmp_path / "checkpoint").read_text().splitlines()) - 1
-    assert f"The {known} designs evaluated so far are in" in raised.value.__notes__[0]
+    n_known = len((tmp_path / "checkpoint").read_text().splitlines()) - 1
+    assert f"The {n_known} designs evaluated so far are in" in raised.value.__notes__[0]
     again = models.problem(deadly, n_workers=2, checkpoint=tmp_path / "checkpoint")
     again.run_driver()
     assert again.driver.history == plain.driver.history

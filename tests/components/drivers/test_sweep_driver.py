@@ -2,9 +2,7 @@
 
 import csv
 import functools
-import importlib
 from concurrent.futures import ThreadPoolExecutor
-from pathlib import Path
 
 import numpy as np
 import openmdao.api as om
@@ -13,12 +11,6 @@ from openmdao.drivers.analysis_generator import CSVGenerator, ProductGenerator
 from openmdao.drivers.sampling.pyDOE_generators import LatinHypercubeGenerator
 
 from propmdao.components import SweepDriver
-
-
-@pytest.fixture
-def models(monkeypatch):
-    monkeypatch.syspath_prepend(Path(__file__).parent)
-    return importlib.import_module("worker_models")
 
 
 def run(models, samples, path, factory=None, **options):

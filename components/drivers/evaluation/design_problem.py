@@ -5,15 +5,15 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-import openmdao.api as om
 from openmdao.core.driver import Driver
 
-from propmdao.components.drivers.runs.candidate import Array, Candidate, constraint_violations
-from propmdao.components.drivers.runs.model_run import said
+from propmdao.components.drivers.evaluation.candidate import Array, Candidate, constraint_violations
 
 
-class DesignRuns:
+class DesignProblem:
     """Design variables, objective and constraints of a driver's model.
+
+    A design is set before a run of the model; a `Candidate` is read after it.
 
     Parameters
     ----------
@@ -79,11 +79,10 @@ class DesignRuns:
         return {name: np.array(self.outputs._abs_get_val(name)) for name in self._sources()}
 
     def outputs_from(self, design: Array, responses: dict[str, Any]) -> Array:
-        """All outputs where only `responses` are known: the others are nan, but the independent."""
+        """All outputs where only `responses` are known; others than the independent are nan."""
         start = self.start_at(design)
         model = self._driver._problem().model
-        known = model._var_allprocs_abs2meta["output"]
-        for name, meta in known.items():
+        for name, meta in model._var_allprocs_abs2meta["output"].items():
             if "openmdao:indep_var" not in meta["tags"]:
                 self.outputs.set_var(name, np.nan)
         for name, value in responses.items():
@@ -92,20 +91,29 @@ class DesignRuns:
         self.outputs.set_val(start)
         return values
 
-    def read(self, design: Array) -> Candidate:
+    def candidate(self, design: Array, failure: str) -> Candidate:
         """Candidate of the model that has just run.
 
-        Raises
-        ------
-        om.AnalysisError
-            When the objective or a constraint is not finite.
+        Parameters
+        ----------
+        design : (n_variables,) array
+            Design of the run.
+        failure : str
+            Reason for which the run has failed, empty when it has not.
+
+        Returns
+        -------
+        Candidate
+            A failed one also where the objective or a constraint is not finite.
         """
+        if failure:
+            return self._failed(design, failure)
         objectives = self._driver.get_objective_values(driver_scaling=False)
         energies = self._driver.get_objective_values()
         constraints = self._driver.get_constraint_values(driver_scaling=False)
         for name, value in {**objectives, **constraints}.items():
             if not np.isfinite(value).all():
-                raise om.AnalysisError(f"{name} is not finite: {value}")
+                return self._failed(design, f"{name} is not finite: {value}")
         violations = [
             constraint_violations(constraints[name], meta, self._equality_tolerance)
             for name, meta in self._driver._cons.items()
@@ -115,10 +123,9 @@ class DesignRuns:
         (objective,), (energy,) = (v for values in (objectives, energies) for v in values.values())
         return Candidate(design, float(objective), float(energy), violation)
 
-    def failed(self, design: Array, error: om.AnalysisError) -> Candidate:
-        """Candidate of a run that has failed."""
+    def _failed(self, design: Array, failure: str) -> Candidate:
         n_constraints = sum(meta["size"] for meta in self._driver._cons.values())
-        return Candidate.failed(design, 1 + n_constraints, said(error))
+        return Candidate.failed(design, 1 + n_constraints, failure)
 
     def description(self) -> dict[str, Any]:
         """Variables, responses and the initial design as JSON values: what the problem is."""

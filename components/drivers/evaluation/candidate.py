@@ -27,7 +27,7 @@ class Candidate:
         Violation of every constraint element in driver scaling, 0 where it holds; infinite when
         the analysis failed.
     failure : str
-        Why the analysis failed, empty when it did not.
+        Reason for which the analysis failed, empty when it did not.
     """
 
     design: Array
@@ -51,7 +51,7 @@ class Candidate:
 
     @property
     def rank(self) -> tuple[bool, float]:
-        """Sorts best first: feasible by objective, then infeasible by total violation."""
+        """Key that sorts best first: feasible by objective, then infeasible by total violation."""
         return not self.feasible, self.energy if self.feasible else float(self.violation.sum())
 
 

@@ -1,8 +1,9 @@
-"""Runs of a model in other processes, on any executor of `concurrent.futures`."""
+"""A model in other processes, on any executor of `concurrent.futures`."""
 
 from __future__ import annotations
 
 import contextlib
+import dataclasses
 import pickle
 import threading
 import traceback
@@ -15,15 +16,15 @@ import openmdao.api as om
 from openmdao.core.constants import _SetupStatus
 from openmdao.core.driver import Driver
 
-from propmdao.components.drivers.runs.candidate import Array
-from propmdao.components.drivers.runs.model_run import ModelRun, run_system
+from propmdao.components.drivers.evaluation.candidate import Array
+from propmdao.components.drivers.evaluation.model_run import ModelRun, record_run
 from propmdao.runtime.worker_processes import results_in_order
 
 # An executor may run tasks on threads; a Problem serves one at a time.
 _WORKER = threading.local()
 
 
-class ModelPool:
+class WorkerPool:
     """Models on the workers of an executor, each run from the output values it is sent.
 
     Values travel, structure does not: every worker builds its Problem once, and what the outputs
@@ -33,13 +34,13 @@ class ModelPool:
     Parameters
     ----------
     factory : callable
-        Returns, without arguments, a Problem that has been set up, with the same model as `model`.
+        Function without arguments that returns a Problem, set up, with the same model as `model`.
         It has to pickle, which functions of a module do and nested ones and lambdas do not. It
         should not attach recorders, whose file every worker would open anew.
     model : om.Group
         Model of the Problem that asks, after its final setup.
     executor : concurrent.futures.Executor
-        Where the runs take place.
+        Executor whose workers run the model.
 
     Raises
     ------
@@ -61,7 +62,7 @@ class ModelPool:
 
     def build_ahead(self, n_workers: int) -> None:
         """Have so many idle workers build the model, side by side instead of one by one."""
-        with contextlib.suppress(BrokenExecutor):  # which the first run says
+        with contextlib.suppress(BrokenExecutor):  # of which the first run tells
             for _ in range(n_workers):
                 self._executor.submit(_build_ahead, self._task)
 
@@ -76,14 +77,14 @@ class ModelPool:
         Yields
         ------
         ModelRun
-            In the order of `starts`.
+            Runs in the order of `starts`.
 
         Raises
         ------
         WorkerLostError
             When a worker dies.
         Exception
-            What the factory raises.
+            Any exception of the factory.
         """
         for run in results_in_order(self._executor, partial(_run_model, self._task), starts):
             if run.error is not None and not run.built:
@@ -98,15 +99,14 @@ def _layout(model: om.Group) -> dict[str, int]:
 
 def _run_model(task: bytes, start: Array) -> ModelRun:
     """Run the model of a task in this worker."""
-    built = False
     try:
         model = _problem(task).model
-        built = True
-        outputs = model.get_nonlinear_vectors()[1]
-        outputs.set_val(start)
-        return run_system(model, outputs)
     except Exception as error:
-        return ModelRun(start, error=_that_travels(error), built=built)
+        return ModelRun(start, error=_portable(error), built=False)
+    outputs = model.get_nonlinear_vectors()[1]
+    outputs.set_val(start)
+    run = record_run(model.run_solve_nonlinear, outputs)
+    return run if run.error is None else dataclasses.replace(run, error=_portable(run.error))
 
 
 def _problem(task: bytes) -> om.Problem:
@@ -119,7 +119,7 @@ def _problem(task: bytes) -> om.Problem:
 
 
 def _build_ahead(task: bytes) -> None:
-    with contextlib.suppress(Exception):  # which the first run says
+    with contextlib.suppress(Exception):  # of which the first run tells
         _problem(task)
 
 
@@ -148,8 +148,8 @@ def _is_set_up(problem: om.Problem) -> bool:
     return metadata is not None and metadata["setup_status"] >= _SetupStatus.POST_SETUP
 
 
-def _that_travels(error: Exception) -> Exception:
-    """Return the error with the worker's traceback, or what it says where it does not pickle."""
+def _portable(error: Exception) -> Exception:
+    """Return the error with the worker's traceback, or its message where it does not pickle."""
     note = "In a worker:\n" + "".join(traceback.format_exception(error))
     error.__cause__ = error.__context__ = None
     try:

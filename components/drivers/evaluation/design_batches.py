@@ -1,20 +1,35 @@
-"""Runs of a model at several designs at once, component by component."""
+"""A model at several designs at once, component by component."""
 
 from __future__ import annotations
 
 import dataclasses
 from collections.abc import Iterable, Iterator
 from itertools import islice
-from typing import Any
+from typing import Any, NamedTuple
 
 import openmdao.api as om
 
-from propmdao.components.bases.jax_component import JaxComponent, arrays
-from propmdao.components.drivers.runs.candidate import Array
-from propmdao.components.drivers.runs.model_run import ModelRun, run_system, said
+from propmdao.components.bases.jax_component import JaxComponent, copied
+from propmdao.components.drivers.evaluation.candidate import Array
+from propmdao.components.drivers.evaluation.model_run import (
+    ModelRun,
+    failure_message,
+    record_run,
+)
 
-# Groups from the model down, each with the name of the subsystem that it hands inputs to.
-_Path = tuple[tuple[om.Group, str], ...]
+
+class _Transfer(NamedTuple):
+    """Handing over of inputs from a group to one of its subsystems."""
+
+    group: om.Group
+    subsystem: str
+
+
+class _Step(NamedTuple):
+    """A subsystem that runs, and the transfers that lead to it from the model down."""
+
+    transfers: tuple[_Transfer, ...]
+    subsystem: Any
 
 
 class DesignBatches:
@@ -40,7 +55,7 @@ class DesignBatches:
     def __init__(self, model: om.Group, at_once: int) -> None:
         self._model, self._at_once = model, at_once
         self._steps = list(_steps(model, ()))
-        if not any(isinstance(subsystem, JaxComponent) for _, subsystem in self._steps):
+        if not any(isinstance(step.subsystem, JaxComponent) for step in self._steps):
             raise ValueError(
                 f"designs_at_once is {at_once}, but the model has no component that evaluates"
                 " several designs at once: none of JAX outside of groups that iterate"
@@ -57,25 +72,30 @@ class DesignBatches:
         Yields
         ------
         ModelRun
-            In the order of `starts`.
+            Runs in the order of `starts`.
         """
         starts = iter(starts)
         while batch := [ModelRun(start) for start in islice(starts, self._at_once)]:
-            for path, subsystem in self._steps:
-                step = self._at_all if isinstance(subsystem, JaxComponent) else self._at_each
-                step(path, subsystem, batch)
+            for step in self._steps:
+                if isinstance(step.subsystem, JaxComponent):
+                    self._run_together(step.transfers, step.subsystem, batch)
+                else:
+                    self._run_in_turn(step, batch)
             yield from batch
 
-    def _at_all(self, path: _Path, component: JaxComponent, batch: list[ModelRun]) -> None:
+    def _run_together(
+        self, transfers: tuple[_Transfer, ...], component: JaxComponent, batch: list[ModelRun]
+    ) -> None:
         """Take the runs on by a component that evaluates all designs at once."""
-        going = list(_going(batch))
+        places = _places_under_way(batch)
         designs = []
-        for place in going:
-            self._reach(path, batch[place])
-            designs.append(arrays(component._inputs))
-        for place, values in zip(going, component.at_designs(designs, self._at_once), strict=True):
+        for place in places:
+            self._restore(batch[place], transfers)
+            designs.append(copied(component._inputs))
+        results = component.evaluate_designs(designs, self._at_once)
+        for place, values in zip(places, results, strict=True):
             if isinstance(values, om.AnalysisError):
-                failure = _as_of_a_run(component, values)
+                failure = _failure_of_run(component, values)
                 batch[place] = dataclasses.replace(batch[place], failure=failure)
                 continue
             self._outputs.set_val(batch[place].outputs)
@@ -83,51 +103,46 @@ class DesignBatches:
                 component._outputs.set_var(name, value)
             batch[place] = ModelRun(self._outputs.asarray(copy=True))
 
-    def _at_each(self, path: _Path, subsystem: Any, batch: list[ModelRun]) -> None:
+    def _run_in_turn(self, step: _Step, batch: list[ModelRun]) -> None:
         """Take the runs on by a subsystem that knows of one design only."""
-        for place in _going(batch):
-            self._reach(path, batch[place])
-            try:
-                batch[place] = run_system(subsystem, self._outputs)
-            except Exception as error:  # what becomes of it, the driver says
-                batch[place] = dataclasses.replace(batch[place], error=error)
+        for place in _places_under_way(batch):
+            self._restore(batch[place], step.transfers)
+            batch[place] = record_run(step.subsystem.run_solve_nonlinear, self._outputs)
 
-    def _reach(self, path: _Path, run: ModelRun) -> None:
+    def _restore(self, run: ModelRun, transfers: tuple[_Transfer, ...]) -> None:
         """Make the model what it is where a run has come to a subsystem."""
         self._outputs.set_val(run.outputs)
         with self._model._scaled_context_all():
-            for group, name in path:
-                group._transfer("nonlinear", "fwd", name)
+            for transfer in transfers:
+                transfer.group._transfer("nonlinear", "fwd", transfer.subsystem)
 
     @property
     def _outputs(self) -> Any:
         return self._model.get_nonlinear_vectors()[1]
 
 
-def _as_of_a_run(component: om.ExplicitComponent, error: om.AnalysisError) -> str:
+def _failure_of_run(component: om.ExplicitComponent, error: om.AnalysisError) -> str:
     """Return what OpenMDAO makes of an error that a component raises when it runs."""
     try:
         with component._call_user_function("compute"):
             raise error
-    except om.AnalysisError as told:
-        return said(told)
+    except om.AnalysisError as raised:
+        return failure_message(raised)
 
 
-def _going(batch: list[ModelRun]) -> Iterator[int]:
-    """Places of the runs that have not failed."""
-    for place, run in enumerate(batch):
-        if not run.failure and run.error is None:
-            yield place
+def _places_under_way(batch: list[ModelRun]) -> list[int]:
+    """Places of the runs that no exception has ended."""
+    return [place for place, run in enumerate(batch) if not run.ended_early]
 
 
-def _steps(group: om.Group, path: _Path) -> Iterator[tuple[_Path, Any]]:
+def _steps(group: om.Group, transfers: tuple[_Transfer, ...]) -> Iterator[_Step]:
     """Subsystems in the order in which they run, with the transfers that lead to them."""
     for subsystem in group._relevance.filter(group._all_subsystem_iter()):
-        there = (*path, (group, subsystem.name))
+        path = (*transfers, _Transfer(group, subsystem.name))
         if isinstance(subsystem, om.Group) and _runs_once(subsystem):
-            yield from _steps(subsystem, there)
+            yield from _steps(subsystem, path)
         elif not isinstance(subsystem, om.IndepVarComp):
-            yield there, subsystem
+            yield _Step(path, subsystem)
 
 
 def _runs_once(group: om.Group) -> bool:

@@ -6,8 +6,8 @@ import pytest
 from numpy.testing import assert_allclose
 from openmdao.utils.assert_utils import assert_check_partials
 
-from propmdao.components.bases.jax_component import FunctionDerivatives
-from propmdao.components.bases.nodes_comp import STATIC, OperatingPointsComp
+from propmdao.components.bases.array_function import FunctionDerivatives
+from propmdao.components.bases.nodes_comp import STATIC, NodesComp
 
 
 def _lift(inputs, constants, static):
@@ -19,7 +19,7 @@ def _lift_alone(inputs, constants, static):
     return {"lift": _lift(inputs, constants, static)["lift"]}
 
 
-class Wing(OperatingPointsComp):
+class Wing(NodesComp):
     """Lift of surfaces that fly at several speeds, and a constant."""
 
     def initialize(self):
@@ -81,7 +81,9 @@ def test_points_without_a_seed_are_not_differentiated(mode, monkeypatch):
     for name in ("forward", "reverse"):
         product = getattr(FunctionDerivatives, name)
         monkeypatch.setattr(
-            FunctionDerivatives, name, lambda *at, of=product: (calls.append(1), of(*at))[1]
+            FunctionDerivatives,
+            name,
+            lambda *args, product=product: (calls.append(1), product(*args))[1],
         )
     totals = prob.compute_totals(of=["lift"], wrt=["speed"])["lift", "speed"]
     assert_allclose(totals, np.diag(np.full(5, 72.0)))
@@ -106,7 +108,7 @@ def test_gradients_of_scalars_are_computed_once_at_a_point(monkeypatch):
     calls = []
     reverse = FunctionDerivatives.reverse
     monkeypatch.setattr(
-        FunctionDerivatives, "reverse", lambda *at: (calls.append(1), reverse(*at))[1]
+        FunctionDerivatives, "reverse", lambda *args: (calls.append(1), reverse(*args))[1]
     )
     for _ in range(2):
         prob.compute_totals(of=["lift"], wrt=["speed", "density", "area"])

@@ -3,16 +3,17 @@
 from __future__ import annotations
 
 import dataclasses
+from collections.abc import Callable
 from typing import Any
 
 import openmdao.api as om
 
-from propmdao.components.drivers.runs.candidate import Array
+from propmdao.components.drivers.evaluation.candidate import Array
 
 
 @dataclasses.dataclass(frozen=True)
 class ModelRun:
-    """What a run of a model has left.
+    """State in which a run has left a model, and why it ended early.
 
     Attributes
     ----------
@@ -21,15 +22,20 @@ class ModelRun:
     failure : str
         Message of the `om.AnalysisError` that ended the run, empty when there was none.
     error : Exception or None
-        What else was raised.
+        Any other exception that ended the run.
     built : bool
-        False when it was raised by building the model.
+        False when the error was raised by building the model.
     """
 
     outputs: Array
     failure: str = ""
     error: Exception | None = None
     built: bool = True
+
+    @property
+    def ended_early(self) -> bool:
+        """True when an exception ended the run."""
+        return bool(self.failure) or self.error is not None
 
 
 def put_outputs(model: om.Group, values: Array) -> None:
@@ -48,29 +54,31 @@ def put_outputs(model: om.Group, values: Array) -> None:
             group._transfer("nonlinear", "fwd")
 
 
-def run_system(system: Any, outputs: Any) -> ModelRun:
-    """Run a system of a model, or the whole model, from what the model holds.
+def record_run(solve: Callable[[], object], outputs: Any) -> ModelRun:
+    """Run a model, or a part of it, from what it holds.
 
     Parameters
     ----------
-    system : System
-        What runs.
+    solve : callable
+        ``run_solve_nonlinear`` of the model or the part.
     outputs : Vector
         Outputs vector of the whole model.
 
     Returns
     -------
     ModelRun
-        What it has left.
+        Outputs after the run, and the exception that has ended it, if any.
     """
-    failure = ""
+    failure, other = "", None
     try:
-        system.run_solve_nonlinear()
+        solve()
     except om.AnalysisError as error:
-        failure = said(error)
-    return ModelRun(outputs.asarray(copy=True), failure)
+        failure = failure_message(error)
+    except Exception as error:  # what becomes of it, the driver says
+        other = error
+    return ModelRun(outputs.asarray(copy=True), failure, other)
 
 
-def said(error: om.AnalysisError) -> str:
+def failure_message(error: om.AnalysisError) -> str:
     """Return why an analysis failed, which is never empty."""
     return str(error) or "AnalysisError without a message"

@@ -1,0 +1,110 @@
+"""Pure functions of arrays by name, compiled: values, values at many points, derivatives."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Hashable, Mapping
+from functools import partial
+from typing import Any, Protocol
+
+import jax
+
+from propmdao.runtime.compilation import compiled
+
+Arrays = dict[str, Any]  # of NumPy or JAX, by variable name
+Function = Callable[[Arrays, Any, Any], Arrays]  # of inputs, constants and what is static
+Shapes = dict[str, tuple[int, ...]]
+
+
+@partial(compiled, static_argnums=(0, 1))
+def evaluate(function: Function, static: Hashable, constants: Any, inputs: Arrays) -> Arrays:
+    """Return ``function(inputs, constants, static)``, compiled."""
+    return function(inputs, constants, static)
+
+
+@partial(compiled, static_argnums=(0, 1))
+def evaluate_all(function: Function, static: Hashable, constants: Any, inputs: Arrays) -> Arrays:
+    """Return the function's values where every input has a leading axis of points, compiled."""
+    return jax.vmap(lambda point: function(point, constants, static))(inputs)
+
+
+class Derivatives(Protocol):
+    """Derivatives at one point, as products by seeds that are dictionaries of all variables."""
+
+    def forward(self, seeds: Arrays) -> Mapping[str, Any]:
+        """Return derivatives of the outputs along the direction `seeds`, one for each input."""
+
+    def reverse(self, seeds: Arrays) -> Mapping[str, Any]:
+        """Return derivatives by every input of the sum of the outputs weighted with `seeds`."""
+
+
+class FunctionDerivatives:
+    """Derivatives of a function, linearised once for all reverse products.
+
+    Parameters
+    ----------
+    function, static, constants, inputs
+        Function and its arguments, in the order in which `evaluate` takes them.
+    outputs : tuple of str
+        Names of those of its results that are differentiated.
+    """
+
+    def __init__(
+        self,
+        function: Function,
+        static: Hashable,
+        constants: Any,
+        inputs: Arrays,
+        outputs: tuple[str, ...],
+    ) -> None:
+        self._linearisation = function, static, outputs, constants, inputs
+        self._pull: Any = None
+
+    def forward(self, seeds: Arrays) -> Mapping[str, Any]:
+        """Return derivatives of the outputs along the direction `seeds`, one for each input."""
+        products: Arrays = _push(*self._linearisation, seeds)
+        return products
+
+    def reverse(self, seeds: Arrays) -> Mapping[str, Any]:
+        """Return derivatives by every input of the sum of the outputs weighted with `seeds`."""
+        if self._pull is None:
+            self._pull = _linearise(*self._linearisation)
+        return _pull_back(self._pull, seeds)
+
+
+def _chosen(
+    function: Function, static: Hashable, outputs: tuple[str, ...], constants: Any
+) -> Callable[[Arrays], Arrays]:
+    def chosen(inputs: Arrays) -> Arrays:
+        values = function(inputs, constants, static)
+        return {name: values[name] for name in outputs}
+
+    return chosen
+
+
+@partial(compiled, static_argnums=(0, 1, 2))
+def _push(
+    function: Function,
+    static: Hashable,
+    outputs: tuple[str, ...],
+    constants: Any,
+    inputs: Arrays,
+    seeds: Arrays,
+) -> Arrays:
+    return jax.jvp(_chosen(function, static, outputs, constants), (inputs,), (seeds,))[1]
+
+
+@partial(compiled, static_argnums=(0, 1, 2))
+def _linearise(
+    function: Function,
+    static: Hashable,
+    outputs: tuple[str, ...],
+    constants: Any,
+    inputs: Arrays,
+) -> Any:
+    return jax.vjp(_chosen(function, static, outputs, constants), inputs)[1]
+
+
+@compiled
+def _pull_back(pull: Any, seeds: Arrays) -> Arrays:
+    products: Arrays = pull(seeds)[0]
+    return products

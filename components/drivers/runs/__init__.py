@@ -1,1 +1,0 @@
-"""How drivers run the model: one design or many, here, in worker processes or in batches."""
