@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
+import jax.numpy as jnp
 import openmdao.api as om
 
 from propmdao.aerodynamics.coefficients import coefficients
@@ -173,7 +174,7 @@ def loads_outputs(loads: RotorLoads, state: RotorState, inputs: Arrays) -> Array
     """
     numbers = coefficients(loads.thrust, loads.torque, state, inputs["diameter"][0])
     return {
-        "rpm": (state.rotation_speed / RAD_PER_S)[None],
+        "rpm": jnp.asarray(state.rotation_speed / RAD_PER_S)[None],
         "thrust": loads.thrust[None],
         "torque": loads.torque[None],
         "shaft_power": (loads.torque * state.rotation_speed)[None],

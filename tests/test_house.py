@@ -134,26 +134,33 @@ def test_functions_take_at_most_seven_arguments(modules):
 
 def test_whoever_imports_jax_has_it_set_up(modules):
     """64-bit floats have to be asked for before the first array is made."""
-    setup = "propmdao.runtime.jax_setup"
+    needs = {
+        name: {
+            module
+            for imported in imports(tree)
+            for module in (imported, imported.rpartition(".")[0])
+            if module in modules
+        }
+        | {name.rsplit(".", k)[0] for k in range(1, name.count(".") + 1)}
+        for name, tree in modules.items()
+    }
+    needs["propmdao"] = set()  # nothing is imported before it is used
     for name, tree in modules.items():
-        uses_jax = any(
-            (
-                isinstance(node, ast.Import)
-                and any(a.name.split(".")[0] == "jax" for a in node.names)
-            )
-            or (isinstance(node, ast.ImportFrom) and (node.module or "").split(".")[0] == "jax")
-            for node in ast.walk(tree)
-        )
-        if not uses_jax or name == setup or name.startswith("studies"):
-            continue
-        parents = [name.rsplit(".", k)[0] for k in range(name.count("."))]
-        direct = {setup, "propmdao.records.pytrees", "propmdao.runtime.compilation"}
-        sets_up = [
-            parent
-            for parent in (name, *parents)
-            if any(
-                imported.startswith(tuple(direct)) or parent in direct
-                for imported in [*imports(modules[parent]), parent]
-            )
-        ]
-        assert sets_up, name
+        reached, left = {name}, [name]
+        while left:
+            new = needs.get(left.pop(), set()) - reached
+            reached |= new
+            left += new
+        if "jax" in _roots(tree):
+            assert "propmdao.runtime.jax_setup" in reached, name
+
+
+def _roots(tree: ast.Module) -> list[str]:
+    """Packages that a module imports from."""
+    names = []
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Import):
+            names += [alias.name for alias in node.names]
+        elif isinstance(node, ast.ImportFrom):
+            names.append(node.module or "")
+    return [name.split(".")[0] for name in names]

@@ -5,11 +5,16 @@ import openmdao.api as om
 import pytest
 from numpy.testing import assert_allclose
 
+from propmdao.aerodynamics.rotor_geometry import RotorGeometry
 from propmdao.aerodynamics.sections.laws import viscous_sections
-from propmdao.aerodynamics.solutions.axial import solve_steady
+from propmdao.aerodynamics.solutions.axial import solve
+from propmdao.aerodynamics.solutions.case import RotorCase
 from propmdao.components import AerodynamicsComp, RotationSpeedComp, TrimmedAerodynamicsComp
 from propmdao.geometry.blade import Blade
 from propmdao.geometry.lattice import strip_interpolation
+from propmdao.records.air import Air
+from propmdao.records.states import RotorState
+from propmdao.records.units import RAD_PER_S
 
 DIAMETER = 0.2794
 STEPS = {"lattice_nodes": 1e-6, "diameter": 1e-5, "speed": 1e-3, "density": 1e-4}
@@ -32,14 +37,20 @@ def problem(nodes, problem_of):
     return lambda comp, **values: problem_of(comp, **(blade | values))
 
 
+def case_of(nodes, rpm, sections=None):
+    """The small blade at 8 m/s as the solvers take it."""
+    state = RotorState(rpm * RAD_PER_S, 8.0, Air())
+    return RotorCase(RotorGeometry(nodes, DIAMETER / 2, 2), state, sections)
+
+
 # --- aerodynamics -------------------------------------------------------------------------------
 
 
 def test_values_are_those_of_the_steady_lattice(nodes, problem, rotor):
     prob = problem(AerodynamicsComp(**rotor), rpm=4200.0)
     prob.run_model()
-    omega = 4200.0 * np.pi / 30.0
-    solution = solve_steady(nodes, 2, DIAMETER / 2, omega, 8.0, 1.225)
+    omega = 4200.0 * RAD_PER_S
+    solution = solve(case_of(nodes, 4200.0))
     thrust, torque = float(solution.thrust), float(solution.torque)
     assert thrust > 0.5
     assert_allclose(prob.get_val("thrust"), thrust, rtol=1e-12)
@@ -74,8 +85,8 @@ def viscous(meshes, problem, rotor, polars):
 def test_viscous_values_are_those_of_the_steady_lattice(viscous, nodes, propeller, polars):
     prob = viscous(8.0)
     middle = strip_interpolation(propeller.r_over_R, 4)
-    sections = viscous_sections(polars, Blade.from_propeller(propeller), middle, 340.294)
-    solution = solve_steady(nodes, 2, DIAMETER / 2, 4200.0 * np.pi / 30.0, 8.0, 1.225, sections)
+    sections = viscous_sections(polars, Blade.from_propeller(propeller), middle)
+    solution = solve(case_of(nodes, 4200.0, sections))
     for name, value in (
         ("thrust", solution.thrust),
         ("torque", solution.torque),
@@ -152,7 +163,7 @@ def trim(problem, rotor):
 
 
 def thrust_at(nodes, rpm):
-    return float(solve_steady(nodes, 2, DIAMETER / 2, rpm * np.pi / 30.0, 8.0, 1.225).thrust)
+    return float(solve(case_of(nodes, rpm)).thrust)
 
 
 @pytest.mark.parametrize("thrust", [0.5, 1.2, 6.0])
