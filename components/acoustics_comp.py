@@ -6,9 +6,9 @@ from typing import Any
 
 import numpy as np
 
-from propmdao.acoustics.levels.decibels import oaspl_db, spl_db
+from propmdao.acoustics.levels.decibels import mean_square, oaspl_db, spl_db
 from propmdao.acoustics.levels.weighting import oaspl_dba
-from propmdao.acoustics.sources.formulation1a import tones
+from propmdao.acoustics.sources.formulation1a import SOURCES, tones
 from propmdao.components.bases.jax_component import Arrays
 from propmdao.components.bases.nodes_comp import STATIC, OperatingPointsComp
 from propmdao.components.noise_inputs import add_noise_inputs, check_rotor, noise_at
@@ -93,8 +93,7 @@ class AcousticsComp(OperatingPointsComp):
         for name, desc in (
             ("spl_bpf_db", "Level of the blade-passage tone."),
             ("oaspl_db", "Overall level of the tones."),
-            ("oaspl_thickness_db", "Overall level of thickness noise alone."),
-            ("oaspl_loading_db", "Overall level of loading noise alone."),
+            *((f"oaspl_{name}_db", f"Overall level of {name} noise alone.") for name in SOURCES),
             ("oaspl_dba", "A-weighted overall level of the tones."),
         ):
             self.add_point_output(name, shape=(n_observers,), desc=desc)
@@ -111,7 +110,7 @@ class AcousticsComp(OperatingPointsComp):
 
 def _levels(inputs: Arrays, constants: None, static: tuple[int, int]) -> Arrays:
     n_blades, n_harmonics = static
-    heard = tones(
+    pressure = tones(
         surface_panels(inputs["surface_nodes"]),
         PointLoads(inputs["load_position"], inputs["load_force"]),
         n_blades,
@@ -119,12 +118,10 @@ def _levels(inputs: Arrays, constants: None, static: tuple[int, int]) -> Arrays:
         n_harmonics,
     )
     return {
-        "spl_bpf_db": spl_db(heard.total)[:, 0],
-        "oaspl_db": oaspl_db(heard.total),
-        "oaspl_thickness_db": oaspl_db(heard.thickness),
-        "oaspl_loading_db": oaspl_db(heard.loading),
-        "oaspl_dba": oaspl_dba(heard.frequency_hz, heard.total),
-        # abs() has no derivative where it is silent
-        "mean_square_pressure": 2.0 * (heard.total.real**2 + heard.total.imag**2),
-        "frequency": heard.frequency_hz,
+        "spl_bpf_db": spl_db(pressure.total)[:, 0],
+        "oaspl_db": oaspl_db(pressure.total),
+        **{f"oaspl_{name}_db": oaspl_db(part) for name, part in pressure.parts.items()},
+        "oaspl_dba": oaspl_dba(pressure.frequency_hz, pressure.total),
+        "mean_square_pressure": mean_square(pressure.total),
+        "frequency": pressure.frequency_hz,
     }

@@ -1,4 +1,4 @@
-"""What noise of a rotor is heard with: its motion, the air, and the observers."""
+"""Inputs of all kinds of noise: motion of the rotor, air, and observers."""
 
 from __future__ import annotations
 
@@ -10,6 +10,8 @@ import openmdao.api as om
 from propmdao.acoustics.kinematics.limits import require_outside_rotor, require_subsonic_tip
 from propmdao.components.bases.jax_component import Arrays
 from propmdao.components.bases.nodes_comp import STATIC, OperatingPointsComp
+from propmdao.records.air import Air
+from propmdao.records.states import RotorState
 from propmdao.records.units import RAD_PER_S
 
 
@@ -30,8 +32,8 @@ def add_noise_inputs(component: OperatingPointsComp, observers: np.ndarray) -> N
     component.add_input("observer_position", val=observers, units="m", tags=STATIC)
 
 
-def noise_at(inputs: Arrays) -> tuple[Any, Any, Any, Any, Any]:
-    """Arguments that all kinds of noise take, in their order.
+def noise_at(inputs: Arrays) -> tuple[RotorState, Any]:
+    """State of the rotor and observers, which all kinds of noise take.
 
     Parameters
     ----------
@@ -40,13 +42,16 @@ def noise_at(inputs: Arrays) -> tuple[Any, Any, Any, Any, Any]:
 
     Returns
     -------
-    rotation_speed, speed, density, sound_speed, observers : scalar arrays, (n_observers, 3) array
-        In rad/s, and as they are declared.
+    state : RotorState
+        Rotation speed, flight speed and air.
+    observers : (n_observers, 3) array
+        Positions from the rotor centre [m].
     """
-    rpm, speed, density, sound = (
+    rpm, speed, density, sound_speed = (
         inputs[name][0] for name in ("rpm", "speed", "density", "sound_speed")
     )
-    return rpm * RAD_PER_S, speed, density, sound, inputs["observer_position"]
+    air = Air(density=density, sound_speed=sound_speed)
+    return RotorState(rpm * RAD_PER_S, speed, air), inputs["observer_position"]
 
 
 def check_rotor(inputs: Any, nodes: str) -> None:
@@ -66,9 +71,9 @@ def check_rotor(inputs: Any, nodes: str) -> None:
     """
     x, y, _ = np.moveaxis(np.asarray(inputs[nodes]), -1, 0)
     radius = float(np.hypot(x, y).max())
-    omega, speed, _, sound, observers = noise_at(inputs)
+    state, observers = noise_at(inputs)
     try:
-        require_subsonic_tip(radius, float(omega), float(speed), float(sound))
+        require_subsonic_tip(radius, state)
         require_outside_rotor(observers, radius)
     except ValueError as error:
         raise om.AnalysisError(str(error)) from error
