@@ -13,7 +13,9 @@ from propmdao.formats.propellers import load_propeller
 from propmdao.geometry.blade import Blade, span_interpolation
 from propmdao.geometry.lattice import lattice_nodes, lattice_span
 from propmdao.geometry.surface import surface_nodes, surface_panels, surface_span
+from propmdao.records.air import Air
 from propmdao.records.loads import PointLoads
+from propmdao.records.states import RotorState
 
 
 @pytest.fixture(scope="module", params=[1, 9], ids="observers-{}".format)
@@ -32,7 +34,7 @@ def case(request):
 
 
 def hear(panels, loads, observers):
-    return tones(panels, loads, 2, 440.0, 8.0, 1.225, 340.294, observers, 10).total
+    return tones(panels, loads, 2, RotorState(440.0, 8.0, Air()), observers, 10).total
 
 
 def timed(benchmark, function, *arguments):
@@ -45,9 +47,9 @@ def test_tones(benchmark, case):
 
 
 def test_forward_derivative(benchmark, case):
-    timed(benchmark, lambda *at: jax.jvp(hear, at, at), *case)
+    timed(benchmark, lambda *values: jax.jvp(hear, values, values), *case)
 
 
 def test_reverse_derivative(benchmark, case):
     weights = jnp.ones((len(case[2]), 10), complex)
-    timed(benchmark, lambda *at: jax.vjp(hear, *at)[1](weights), *case)
+    timed(benchmark, lambda *values: jax.vjp(hear, *values)[1](weights), *case)

@@ -11,6 +11,8 @@ from propmdao.acoustics.broadband.rotor import StripFlow, rotor_self_noise
 from propmdao.acoustics.broadband.section import Section
 from propmdao.acoustics.broadband.self_noise import third_octave_centers
 from propmdao.acoustics.kinematics.observers import arc
+from propmdao.records.air import Air
+from propmdao.records.states import RotorState
 
 BANDS = third_octave_centers(100, 80e3)
 
@@ -41,7 +43,7 @@ def case(request):
 
 
 def hear(strips, observers):
-    return rotor_self_noise(strips, 2, 440.0, 0.0, 340.294, 1.46e-5, observers, BANDS).total
+    return rotor_self_noise(strips, 2, RotorState(440.0, 0.0, Air()), observers, BANDS).total
 
 
 def timed(benchmark, function, *arguments):
@@ -54,4 +56,4 @@ def test_rotor_self_noise(benchmark, case):
 
 
 def test_reverse_derivative(benchmark, case):
-    timed(benchmark, jax.grad(lambda *at: jnp.sum(jnp.log(hear(*at)))), *case)
+    timed(benchmark, jax.grad(lambda *values: jnp.sum(jnp.log(hear(*values)))), *case)

@@ -45,20 +45,22 @@ def _main(method: str, seconds: float) -> None:
     from propmdao.formats.propellers import load_propeller
     from propmdao.geometry.blade import Blade, span_interpolation
     from propmdao.geometry.surface import surface_nodes, surface_panels, surface_span
+    from propmdao.records.air import Air
+    from propmdao.records.units import RAD_PER_S
 
     propeller = load_propeller("apcsf_11x4.7")
     span = span_interpolation(propeller.r_over_R, surface_span(propeller.r_over_R[0], 80))
     panels = surface_panels(surface_nodes(Blade.from_propeller(propeller), span, 65))
     loads = analyze(propeller, rpm=RPM, speed=SPEED).loads.point_loads
-    rotor = Rotor(equally_spaced(propeller.n_blades), RPM * np.pi / 30, panels, loads)
+    rotor = Rotor(equally_spaced(propeller.n_blades), RPM * RAD_PER_S, panels, loads)
     flight = (translation((0, 0, -15 * SPEED), velocity=(0, 0, SPEED)),)
     microphone = Observers(jnp.array([[MISS, 0.0, 0.0]]), jnp.zeros(3))
     times = np.arange(round(seconds * RATE)) / RATE
     begin = time.perf_counter()
     if method == "marching":
-        rotor_histories([rotor], microphone, times, 1.225, 340.294, flight)
+        rotor_histories([rotor], microphone, times, Air(), flight)
     else:
-        flyover_histories([rotor], microphone, times, 1.225, 340.294, flight, TOP)
+        flyover_histories([rotor], microphone, times, Air(), flight, TOP)
     wall = time.perf_counter() - begin
     print(wall, resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024)
 

@@ -26,10 +26,13 @@ from propmdao.acoustics.sources.moving_sources import compact_sections
 from propmdao.acoustics.sources.periodic import rotor_tones
 from propmdao.acoustics.sources.rotors import Rotor
 from propmdao.formats.wopwop.write_case import write_case
+from propmdao.records.air import Air
 from propmdao.records.loads import PointLoads
+from propmdao.records.units import RAD_PER_S
 
 HERE = Path(__file__).parent
 COLUMNS = ("r_m", "length_m", "thrust_n_per_m", "drag_n_per_m")
+SOURCES = ("thickness", "loading")
 N_TONES = 10  # of the blade passage, or multiples of the rotation for unequal blades
 
 
@@ -61,33 +64,33 @@ def make_rotor(blade: dict[str, np.ndarray], azimuths_deg: list[float], rpm: flo
     loads = PointLoads(jnp.asarray(position), jnp.asarray(np.stack([zero, along, -up], axis=-1)))
     area = blade.get("section_area_m2")
     panels = None if area is None else compact_sections(position, area * length)
-    return Rotor(np.radians(azimuths_deg), rpm * np.pi / 30, panels, loads)
+    return Rotor(np.radians(azimuths_deg), rpm * RAD_PER_S, panels, loads)
 
 
 def print_levels(
-    rotor: Rotor, speed: float, density: float, sound_speed: float, distance: float,
-    elevations_deg: list[float],
-) -> None:  # fmt: skip
+    rotor: Rotor, speed: float, air: Air, distance: float, elevations_deg: list[float]
+) -> None:
     """Levels at microphones that fly along, on an arc around the rotor."""
     places = arc(distance, elevations_deg)
-    tones = rotor_tones(rotor, (0, 0, speed), density, sound_speed, places, N_TONES)
+    tones = rotor_tones(rotor, (0, 0, speed), air, places, N_TONES)
     weighted = oaspl_dba(tones.frequency_hz, tones.total)
     table = Table(box=box.SIMPLE, pad_edge=False, collapse_padding=True)
     headings = (
         "elevation\ndeg",
         f"{float(tones.frequency_hz[0]):.1f} Hz\ndB",
-        "thickness\ndB",
-        "loading\ndB",
+        *(f"{name}\ndB" for name in SOURCES),
         "OASPL\ndB",
         "tones\ndBA",
     )
     for heading in headings:
         table.add_column(heading, justify="right")
-    parts = (
+    levels = (
         spl_db(tones.total)[:, 0],
-        *map(oaspl_db, (tones.thickness, tones.loading, tones.total)),
+        *(oaspl_db(tones.parts[name]) for name in SOURCES),
+        oaspl_db(tones.total),
+        weighted,
     )
-    for row in zip(elevations_deg, *parts, weighted, strict=True):
+    for row in zip(elevations_deg, *levels, strict=True):
         # what cancels on the axis leaves rounding
         table.add_row(
             f"{row[0]:g}", *(f"{x:.1f}" if x > -100 else "-" for x in map(float, row[1:]))
@@ -120,16 +123,16 @@ def main() -> None:
     print(
         f"{n_blades} blades at {options.rpm:g} rpm: thrust {thrust:.4g} N, torque {torque:.4g} N m"
     )
-    air = options.rho, options.sound_speed
+    air = Air(density=options.rho, sound_speed=options.sound_speed)
     try:
-        print_levels(rotor, options.speed, *air, options.distance, options.elevations)
+        print_levels(rotor, options.speed, air, options.distance, options.elevations)
         if options.wopwop is not None:
             velocity = np.array([0.0, 0.0, options.speed])
             places = arc(options.distance, options.elevations)
             observers = Observers(jnp.asarray(places), jnp.asarray(velocity))
             times = np.arange(1024) * 60 / options.rpm / 1024
             flight = (translation(velocity=velocity),)
-            write_case(options.wopwop, [rotor], [None], observers, times, *air, flight)
+            write_case(options.wopwop, [rotor], [None], observers, times, air, flight)
     except ValueError as error:
         raise SystemExit(str(error)) from None
 

@@ -1,4 +1,4 @@
-"""What noise of a rotor is heard with: its motion, the air, and the observers."""
+"""Inputs of all kinds of noise: motion of the rotor, air, and observers."""
 
 from __future__ import annotations
 

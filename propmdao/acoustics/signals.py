@@ -1,16 +1,24 @@
-"""What is heard of rotors: tones by their amplitudes, records of pressure over time."""
+"""What is heard of rotors: tones by their amplitudes, records of pressure over time.
+
+Both hold the sources of the sound apart, by name, in `parts`; whoever works on them works on all
+parts, by `each` or by a loop, and names none.
+"""
 
 from __future__ import annotations
 
 import dataclasses
 import functools
 import operator
+from collections.abc import Callable
 
+import jax
 import numpy as np
 from jax import Array
 from numpy.typing import NDArray
 
 from propmdao.records.pytrees import record
+
+Floats = NDArray[np.float64]
 
 
 @record
@@ -24,8 +32,8 @@ class Tones:
     ----------
     frequency_hz : (n_harmonics,) array
         Frequencies f_m = m B Omega / 2 pi [Hz].
-    parts : dict of str to (n_observers, n_harmonics) complex array
-        Amplitudes P_m of each noise source, "thickness" and "loading" [Pa].
+    parts : dict of (n_observers, n_harmonics) complex arrays
+        Amplitudes P_m [Pa] by the name of their source: ``"thickness"``, ``"loading"``.
     """
 
     frequency_hz: Array
@@ -36,6 +44,25 @@ class Tones:
         """Amplitudes of the whole pressure [Pa]: pressures add, levels never do."""
         return functools.reduce(operator.add, self.parts.values())
 
+    def each(self, function: Callable[[Array], Array]) -> Tones:
+        """Apply a function to the amplitudes of every source.
+
+        Parameters
+        ----------
+        function : callable
+            Function of an (n_observers, n_harmonics) array that returns such an array.
+
+        Returns
+        -------
+        Tones
+            Tones of the same frequencies.
+        """
+        return Tones(self.frequency_hz, {name: function(p) for name, p in self.parts.items()})
+
+    def __add__(self, other: Tones) -> Tones:
+        """Add the pressures of other tones of the same frequencies, source by source."""
+        return Tones(self.frequency_hz, jax.tree.map(operator.add, self.parts, other.parts))
+
 
 @dataclasses.dataclass(frozen=True)
 class PressureHistory:
@@ -45,15 +72,33 @@ class PressureHistory:
     ----------
     time : (n_times,) array
         Observer times [s].
-    thickness, loading : (n_observers, n_times) arrays
-        Pressure [Pa].
+    parts : dict of (n_observers, n_times) arrays
+        Pressure [Pa] by the name of its source: ``"thickness"``, ``"loading"``.
     """
 
-    time: NDArray[np.float64]
-    thickness: NDArray[np.float64]
-    loading: NDArray[np.float64]
+    time: Floats
+    parts: dict[str, Floats]
 
     @property
-    def total(self) -> NDArray[np.float64]:
-        """Of the whole noise [Pa]: pressures add, levels never do."""
-        return self.thickness + self.loading
+    def total(self) -> Floats:
+        """Pressure of all sources together [Pa]: pressures add, levels never do."""
+        return functools.reduce(operator.add, self.parts.values())
+
+    def each(self, function: Callable[[Floats], Floats]) -> PressureHistory:
+        """Apply a function to the pressure of every source.
+
+        Parameters
+        ----------
+        function : callable
+            Function of an (n_observers, n_times) array that keeps the times.
+
+        Returns
+        -------
+        PressureHistory
+            Pressures at the same times.
+        """
+        return PressureHistory(self.time, {name: function(p) for name, p in self.parts.items()})
+
+    def __add__(self, other: PressureHistory) -> PressureHistory:
+        """Add the pressures of another record of the same times, source by source."""
+        return PressureHistory(self.time, jax.tree.map(operator.add, self.parts, other.parts))

@@ -4,14 +4,16 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from pathlib import Path
+from typing import NamedTuple
 
 import jax.numpy as jnp
 import numpy as np
 from numpy.typing import NDArray
 
 from propmdao.acoustics.kinematics.reception import Observers, require_outside, source_times
-from propmdao.acoustics.sources.advanced_time import loading_history, thickness_history
-from propmdao.acoustics.sources.rotors import segments
+from propmdao.acoustics.signals import PressureHistory
+from propmdao.acoustics.sources.advanced_time import source_history
+from propmdao.acoustics.sources.rotors import segments, silence
 from propmdao.formats.wopwop.binary import WopwopFileError
 from propmdao.formats.wopwop.cases import Case, Container, ObserverGrid, read_cases
 from propmdao.formats.wopwop.geometry_file import read_geometry
@@ -24,11 +26,12 @@ from propmdao.formats.wopwop.sources import (
     thickness_sources,
 )
 from propmdao.formats.wopwop.zones import Zone
+from propmdao.records.air import Air
 
 
 @dataclass(frozen=True)
 class CaseResult:
-    """What the observers of a case hear.
+    """Pressure at a group of observers of a case.
 
     Attributes
     ----------
@@ -37,7 +40,7 @@ class CaseResult:
     observers : str
         Title of the observers.
     pressure : PressureHistories
-        At each of them.
+        Pressure at each of them.
     """
 
     case: str
@@ -51,7 +54,7 @@ def run_case(folder: str | Path) -> list[CaseResult]:
     Parameters
     ----------
     folder : str or Path
-        Where ``cases.nam`` is.
+        Folder that holds ``cases.nam``.
 
     Returns
     -------
@@ -72,25 +75,30 @@ def run_case(folder: str | Path) -> list[CaseResult]:
 
 def _pressure(case: Case, grid: ObserverGrid) -> PressureHistories:
     observers = Observers(jnp.asarray(grid.position), jnp.asarray(grid.velocity))
-    thickness = np.zeros((len(grid.position), grid.times.size))
-    loading = np.zeros_like(thickness)
+    history = silence(observers, grid.times)
     for container in case.containers:
-        thickness_part, loading_part = _container(case, container, observers, grid.times)
-        thickness += thickness_part
-        loading += loading_part
-    thickness, loading = (_filtered(p, grid) for p in (thickness, loading))
+        history = history + _container(case, container, observers, grid.times)
+    history = history.each(lambda pressure: _filtered(pressure, grid))
     return PressureHistories(
         grid.position[:, None] + grid.velocity * grid.times[:, None],
-        np.broadcast_to(grid.times, thickness.shape),
-        thickness,
-        loading,
-        thickness + loading,
+        np.broadcast_to(grid.times, history.total.shape),
+        total=history.total,
+        **history.parts,
     )
+
+
+class _Patch(NamedTuple):
+    """Zone of a geometry file, as a surface if it is heard as one, and its loads."""
+
+    zone: Zone
+    surface: Zone | None
+    load: Zone | None
+    file: LoadingFile | None
 
 
 def _container(
     case: Case, container: Container, observers: Observers, times: NDArray[np.float64]
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+) -> PressureHistory:
     geometry = read_geometry(container.geometry)
     data = None if container.loading is None else read_loading(container.loading)
     loads = {} if data is None else dict(zip(data.zone_numbers, data.zones, strict=True))
@@ -99,51 +107,52 @@ def _container(
             f"{container.loading}: made for {data.n_geometry_zones} zones; "
             f"{container.geometry} has {len(geometry.zones)}"
         )
-    heard = np.zeros((2, len(observers.position), times.size))
+    history = silence(observers, times)
     for number, zone in enumerate(geometry.zones, start=1):
         surface = None if is_line(zone) or -number in loads or not case.thickness else zone
         load = loads.get(number, loads.get(-number)) if case.loading else None
         if surface is None and load is None:
             continue
         try:
-            heard += _zone(case, container, zone, surface, load, data, observers, times)
+            patch = _Patch(zone, surface, load, data)
+            history = history + _patch_history(case, container, patch, observers, times)
         except ValueError as error:
             raise WopwopFileError(
                 f"{container.geometry}: zone {number} {zone.name!r}: {error}"
             ) from None
-    return heard[0], heard[1]
+    return history
 
 
-def _zone(
+def _patch_history(
     case: Case,
     container: Container,
-    zone: Zone,
-    surface: Zone | None,
-    load: Zone | None,
-    file: LoadingFile | None,
+    patch: _Patch,
     observers: Observers,
     times: NDArray[np.float64],
-) -> NDArray[np.float64]:
+) -> PressureHistory:
     """Thickness noise of a zone if it is a surface, loading noise if it has loads."""
-    motion, c, offset = container.motion, case.sound_speed, container.key_offset
+    motion, offset = container.motion, container.key_offset
+    air = Air(density=case.density, sound_speed=case.sound_speed)
+    zone, surface, load, file = patch
     points = source_points(zone)
     require_outside(motion, points, observers, times, "the sources")
     changing = any(q is not None and q.keys is not None for q in (zone, load))
     turned = file is not None and file.frame == 1
-    heard = np.zeros((2, len(observers.position), times.size))
+    history = silence(observers, times)
     for part in segments(times.size, zone.values[0, 0].size if changing or turned else 0):
         t = times[part]
         multiple = max(128, t.size // 4)
-        tau = source_times(motion, points, observers, t, c, container.step, multiple)
+        tau = source_times(motion, points, observers, t, case.sound_speed, container.step, multiple)
+        sources = {}
         if surface is not None:
-            panels = thickness_sources(surface, tau, offset)
-            heard[0, :, part] = thickness_history(
-                panels, motion, tau, observers, t, case.density, c
-            )
+            sources["thickness"] = thickness_sources(surface, tau, offset)
         if load is not None and file is not None:
-            forces = loading_sources(zone, load, file, tau, motion, offset)
-            heard[1, :, part] = loading_history(forces, motion, tau, observers, t, c)
-    return heard
+            sources["loading"] = loading_sources(zone, load, file, tau, motion, offset)
+        for name, moving in sources.items():
+            history.parts[name][:, part] = source_history(
+                name, moving, motion, tau, observers, t, air
+            )
+    return history
 
 
 def _filtered(pressure: NDArray[np.float64], grid: ObserverGrid) -> NDArray[np.float64]:

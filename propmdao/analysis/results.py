@@ -108,7 +108,7 @@ class Analysis:
             or why it did not converge) and a list of observers with their levels.
         """
         levels = jax.tree.map(np.asarray, _levels(self.tones))
-        places = directions(self.listening.observers)
+        places = directions(self.listening.observers).rounded()
         propeller = {key: getattr(self.propeller, key) for key in ("name", "diameter", "n_blades")}
         propeller |= {"checksum": checksum(self.propeller), "source": self.propeller.source}
         return {
@@ -129,11 +129,10 @@ class Analysis:
             "converged": bool(self.loads.converged),
             "failure": failure(self.loads),
             "observers": [
-                # Rounding leaves 1e-15 deg where zero is meant.
                 {
-                    "elevation_deg": round(float(places.elevation_deg[i]), 9) + 0.0,
-                    "azimuth_deg": round(float(places.azimuth_deg[i]), 9) + 0.0,
-                    "radius": round(float(places.radius[i]), 9),
+                    "elevation_deg": float(places.elevation_deg[i]),
+                    "azimuth_deg": float(places.azimuth_deg[i]),
+                    "radius": float(places.radius[i]),
                     **self._heard(i, levels),
                 }
                 for i in range(len(self.listening.observers))

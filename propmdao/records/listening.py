@@ -8,8 +8,6 @@ from typing import Literal, get_args
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from propmdao.records.air import Air, require_known_air
-
 Floats = NDArray[np.float64]
 #: What places a group of observers, by the words of the command line.
 GroupKind = Literal["arc", "point", "circle", "grid", "hemisphere"]
@@ -28,28 +26,26 @@ class Surroundings:
     level_flight : bool
         Whether the rotor's axis lies along the ground, azimuth 0 pointing down to it; by default it
         stands upright, in hover and climb.
-    air : Air or None
-        Air that absorbs sound, or None.
+    absorption : bool
+        Whether the air, which is that of the operating point, absorbs sound.
 
     Raises
     ------
     ValueError
-        If the height is not positive or the air is outside what ISO 9613-1 states.
+        If the height is not positive.
     """
 
     ground: float | Literal["flush"] | None = None
     level_flight: bool = False
-    air: Air | None = None
+    absorption: bool = False
 
     def __post_init__(self) -> None:
-        """Refuse what cannot be."""
+        """Refuse a height that is not positive."""
         if isinstance(self.ground, float | int) and not 0.0 < self.ground < np.inf:
             raise ValueError(f"height above ground must be positive [m]; it is {self.ground:g}")
-        if self.air is not None:
-            require_known_air(self.air)
 
     def __str__(self) -> str:
-        """Say it in one line."""
+        """Describe ground and air in one line."""
         parts = []
         if isinstance(self.ground, str):
             parts.append("observers flush on hard ground")
@@ -57,11 +53,8 @@ class Surroundings:
             parts.append(f"hard ground {self.ground:g} m below the hub")
         if self.level_flight:
             parts.append("level flight")
-        if self.air is not None:
-            celsius, percent = self.air.temperature - 273.15, 100 * self.air.relative_humidity
-            parts.append(
-                f"absorbing air of {celsius:g} deg C, {percent:g} %, {self.air.pressure:g} Pa"
-            )
+        if self.absorption:
+            parts.append("absorbing air")
         return ", ".join(parts) or "free field"
 
     @property
@@ -75,12 +68,13 @@ class Surroundings:
         Parameters
         ----------
         positions : (..., 3) array
-            From the rotor centre, the third coordinate up, in level flight the first one ahead [m].
+            Positions from the rotor centre, the third coordinate up, in level flight the first one
+        ahead [m].
 
         Returns
         -------
         (..., 3) array
-            From the rotor centre, in its axes [m].
+            Positions from the rotor centre, in its axes [m].
         """
         x, y, z = np.moveaxis(np.asarray(positions, float), -1, 0)
         return np.stack([-z, y, x] if self.level_flight else [x, y, z], axis=-1)

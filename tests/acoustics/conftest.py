@@ -14,13 +14,15 @@ from propmdao.acoustics.sources.formulation1a import tones
 from propmdao.formats.propellers import load_propeller
 from propmdao.geometry.blade import Blade, span_interpolation
 from propmdao.geometry.surface import surface_nodes, surface_panels, surface_span
+from propmdao.records.air import Air
 from propmdao.records.loads import PointLoads
 from propmdao.records.panels import Panels
+from propmdao.records.states import RotorState
 
 
 @dataclasses.dataclass(frozen=True)
 class Rotor:
-    """All that `tones` wants to know, in its order, with a default for each."""
+    """Arguments of `tones`, with a default for each."""
 
     panels: Panels
     loads: PointLoads
@@ -31,8 +33,13 @@ class Rotor:
     sound_speed: float = 340.0
 
     def tones(self, observers: np.ndarray, n_harmonics: int = 10) -> Tones:
-        arguments = [getattr(self, field.name) for field in dataclasses.fields(self)]
-        return tones(*arguments, np.atleast_2d(observers), n_harmonics)
+        places = np.atleast_2d(observers)
+        return tones(self.panels, self.loads, self.n_blades, self.state, places, n_harmonics)
+
+    @property
+    def state(self) -> RotorState:
+        air = Air(density=self.density, sound_speed=self.sound_speed)
+        return RotorState(self.rotation_speed, self.speed, air)
 
     def with_(self, **changes: object) -> Rotor:
         return dataclasses.replace(self, **changes)

@@ -16,8 +16,9 @@ from propmdao.acoustics.kinematics.reception import Observers
 from propmdao.acoustics.sources.rotors import rotor_histories
 from propmdao.analysis.foreign_case import run_case
 from propmdao.commands.wopwop_command import levels
+from propmdao.records.air import Air
 
-RHO, C, DISTANCE = 1.226, 340.0, 30.48
+AIR, DISTANCE = Air(density=1.226, sound_speed=340.0), 30.48
 
 
 @pytest.fixture(scope="module")
@@ -53,11 +54,11 @@ def test_default_table_and_its_levels_by_marching(study, capsys):
     )
     t = np.arange(512) * 60 / 1400 / 512
     places = Observers(jnp.asarray(arc(DISTANCE, [-45.0, 0.0, 45.0])), jnp.zeros(3))
-    heard = rotor_histories([rotor], places, t, RHO, C)
+    heard = rotor_histories([rotor], places, t, AIR)
     for i, elevation in enumerate((-45.0, 0.0, 45.0)):
         _, thickness, loading, total, _ = map(float, rows[elevation])
-        assert thickness == pytest.approx(decibels(heard.thickness[i]), abs=0.06)
-        assert loading == pytest.approx(decibels(heard.loading[i]), abs=0.06)
+        assert thickness == pytest.approx(decibels(heard.parts["thickness"][i]), abs=0.06)
+        assert loading == pytest.approx(decibels(heard.parts["loading"][i]), abs=0.06)
         assert total == pytest.approx(decibels(heard.total[i]), abs=0.06)
 
 

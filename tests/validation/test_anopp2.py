@@ -15,8 +15,11 @@ import pytest
 
 from propmdao.acoustics.signals import Tones
 from propmdao.acoustics.sources.formulation1a import tones
+from propmdao.records.air import Air
 from propmdao.records.loads import PointLoads
 from propmdao.records.panels import Panels
+from propmdao.records.states import RotorState
+from propmdao.records.units import RAD_PER_S
 
 ELEVATION = np.radians(-45.0)
 OBSERVER = 30.48 * np.array([[0.0, -np.cos(ELEVATION), np.sin(ELEVATION)]])  # blade 1 along +x
@@ -63,15 +66,16 @@ def line_tones(blade: np.ndarray, rpm: float, n_harmonics: int) -> Tones:
     )
     force = np.stack([0 * length, along * length, -down * length], axis=-1)
     loads = PointLoads(jnp.asarray(position), jnp.asarray(force))
-    return tones(cubes, loads, 2, rpm * np.pi / 30, 5.0, 1.226, 340.0, OBSERVER, n_harmonics)
+    state = RotorState(rpm * RAD_PER_S, 5.0, Air(density=1.226, sound_speed=340.0))
+    return tones(cubes, loads, 2, state, OBSERVER, n_harmonics)
 
 
 def test_harmonics_at_1400_rpm():
     blade = np.array(BLADE_1400_RPM.replace("|", "\n").split(), float).reshape(-1, 5).T
     result = line_tones(blade, 1400.0, 6)
     for actual, expected in (
-        (result.thickness[0], np.array(MONOPOLE_1400_RPM)),
-        (result.loading[0], np.array(DIPOLE_1400_RPM)),
+        (result.parts["thickness"][0], np.array(MONOPOLE_1400_RPM)),
+        (result.parts["loading"][0], np.array(DIPOLE_1400_RPM)),
     ):
         # measured: 0.7 % of the first monopole harmonic, less elsewhere
         assert np.abs(actual - expected).max() < 0.01 * np.abs(expected[0])
@@ -94,8 +98,8 @@ def test_histories_over_the_first_blade_passage(reference_data: Path, rpm: int):
     time = history["t_s"][history["t_s"] - history["t_s"][0] < 30.0 / rpm]
     phase = np.exp(-2j * np.pi * np.outer(time, result.frequency_hz))
     for name, amplitude in (
-        ("p_monopole_Pa", result.thickness[0]),
-        ("p_dipole_Pa", result.loading[0]),
+        ("p_monopole_Pa", result.parts["thickness"][0]),
+        ("p_dipole_Pa", result.parts["loading"][0]),
     ):
         expected = history[name][: time.size]
         error = 2 * (phase @ np.asarray(amplitude)).real - (expected - expected.mean())

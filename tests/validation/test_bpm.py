@@ -16,8 +16,9 @@ from propmdao.acoustics.broadband.boundary_layer import boundary_layer
 from propmdao.acoustics.broadband.directivity import radiation
 from propmdao.acoustics.broadband.section import Section
 from propmdao.acoustics.broadband.self_noise import trailing_edge_noise
-from propmdao.acoustics.broadband.turbulent_spectra import amplitude_k1, shape_a, shape_b
+from propmdao.acoustics.broadband.turbulent_spectra import SHAPE_A, SHAPE_B, amplitude_k1
 from propmdao.acoustics.levels.decibels import level_db
+from propmdao.records.air import Air
 
 NOMINAL = np.array(
     [m * 10**k for k in range(2, 5) for m in (1, 1.25, 1.6, 2, 2.5, 3.15, 4, 5, 6.3, 8)]
@@ -28,18 +29,21 @@ def table(path):
     return np.genfromtxt(path, delimiter=",", names=True)
 
 
-def levels(frequency, values, viscosity, sound_speed, distance, trip):
+def levels(frequency, values, air, distance, trip):
     section = Section(*(jnp.asarray(v) for v in values))
-    layer = boundary_layer(section.chord, section.speed, section.angle_of_attack, viscosity, trip)
-    toward = radiation(0.0, 0.0, distance, section.speed / sound_speed)
-    edge = trailing_edge_noise(frequency, section, layer, toward, sound_speed, viscosity, trip)
+    layer = boundary_layer(
+        section.chord, section.speed, section.angle_of_attack, air.kinematic_viscosity, trip
+    )
+    toward = radiation(0.0, 0.0, distance, section.speed / air.sound_speed)
+    edge = trailing_edge_noise(frequency, section, layer, toward, air, trip)
     return {name: np.asarray(level_db(p)) for name, p in edge._asdict().items()}
 
 
 def test_table_d2(reference_data):
     printed = table(reference_data / "bpm" / "rp1218_tableD2_untripped.csv")
     values = (0.3048, 0.4572, 71.3, np.radians(1.516), 0.0, 0.0)
-    got = levels(printed["freq_hz"], values, 1.4529e-5, 340.46, 1.22, "none")
+    air = Air(density=1.0, sound_speed=340.46, dynamic_viscosity=1.4529e-5)
+    got = levels(printed["freq_hz"], values, air, 1.22, "none")
     for mechanism, column, largest in (
         ("pressure_side", "pressure", 0.01),
         ("suction_side", "suction", 0.01),
@@ -102,8 +106,7 @@ def figure_error(folder, figure, curve, mechanism, **changed):
     got = levels(
         NOMINAL[nearest],
         [float(case[name] or 0) for name in names],
-        float(case["nu_m2s"]),
-        sound_speed,
+        Air(density=1.0, sound_speed=sound_speed, dynamic_viscosity=float(case["nu_m2s"])),
         float(case["r_e_m"]),
         "heavy" if case["bl"].startswith("Tripped") else "none",
     )
@@ -131,15 +134,15 @@ def test_thickness_at_zero_angle(reference_data, trip, thickness, curve, low, hi
 @pytest.mark.parametrize(
     ("shape", "curve", "factor", "mean"),
     [
-        (shape_a, "A_min", 0.0, 0.3),
-        (shape_a, "A_max", 1.0, 0.2),
-        (shape_b, "B_min", 0.0, 0.7),  # steep: 0.7 dB are 0.5 % in frequency
-        (shape_b, "B_max", 1.0, 0.3),
+        (SHAPE_A, "A_min", 0.0, 0.3),
+        (SHAPE_A, "A_max", 1.0, 0.2),
+        (SHAPE_B, "B_min", 0.0, 0.7),  # steep: 0.7 dB are 0.5 % in frequency
+        (SHAPE_B, "B_max", 1.0, 0.3),
     ],
 )
 def test_spectral_shapes(reference_data, shape, curve, factor, mean):
     read = table(reference_data / "bpm" / "brooks1989" / f"figure78-{curve}.csv")
-    got = np.asarray(shape(jnp.log10(read["x_as_digitised"]), factor))
+    got = np.asarray(shape.level(jnp.log10(read["x_as_digitised"]), factor))
     error = np.abs(got - read["y_as_digitised"])
     assert error.mean() < mean
     assert error.max() < 1.2

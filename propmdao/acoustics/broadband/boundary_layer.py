@@ -6,17 +6,13 @@ its fits.
 
 from __future__ import annotations
 
-from typing import Literal
-
 import jax.numpy as jnp
 from jax import Array
 from jax.typing import ArrayLike
 
 from propmdao.acoustics.broadband.smooth import ramp, smooth_abs
+from propmdao.records.models import Trip
 from propmdao.records.pytrees import record
-
-#: How the boundary layer is tripped.
-Trip = Literal["none", "light", "heavy"]
 
 _LIGHT_TRIP = 0.6  # of the heavily tripped thickness, as the report's program has it
 _LAST_ANGLE = 25.0  # the fits end here [deg]; larger angles keep its thickness
@@ -70,7 +66,7 @@ def boundary_layer(
     angle_of_attack : array
         Angle from zero lift [rad]. The side that is the suction side follows from its sign.
     kinematic_viscosity : float
-        Of the air [m^2/s].
+        Kinematic viscosity of the air [m^2/s].
     trip : {"none", "light", "heavy"}
         Natural transition, or tripped near the leading edge (static).
 

@@ -15,16 +15,14 @@ import numpy as np
 from jax import Array
 from jax.typing import ArrayLike
 
-from propmdao.acoustics.broadband.boundary_layer import BoundaryLayer, Trip, boundary_layer
+from propmdao.acoustics.broadband.boundary_layer import BoundaryLayer, boundary_layer
 from propmdao.acoustics.broadband.directivity import radiation
 from propmdao.acoustics.broadband.section import Section
-from propmdao.acoustics.broadband.self_noise import (
-    SelfNoise,
-    Tip,
-    tip_noise,
-    trailing_edge_noise,
-)
+from propmdao.acoustics.broadband.self_noise import SelfNoise, tip_noise, trailing_edge_noise
+from propmdao.acoustics.kinematics.emission import emission_distance
+from propmdao.records.models import SelfNoiseModel
 from propmdao.records.pytrees import record
+from propmdao.records.states import RotorState
 from propmdao.runtime.compilation import compiled
 
 
@@ -44,61 +42,52 @@ class StripFlow:
     section : Section
         Sections and their flow; each array (n,), or (n_azimuths, n) where the flow changes over
         the turn.
+    layer : BoundaryLayer or None
+        Boundary layer by another model, arrays like those of the sections; None for the fits of
+        `boundary_layer`.
     """
 
     position: Array
     chord_direction: Array
     span_direction: Array
     section: Section
+    layer: BoundaryLayer | None = None
 
 
-@partial(compiled, static_argnames=("n_blades", "n_azimuths", "trip", "tip"))
+@partial(compiled, static_argnames=("n_blades", "model", "n_azimuths"))
 def rotor_self_noise(
     strips: StripFlow,
     n_blades: int,
-    rotation_speed: ArrayLike,
-    speed: ArrayLike,
-    sound_speed: ArrayLike,
-    kinematic_viscosity: ArrayLike,
+    state: RotorState,
     observers: ArrayLike,
     frequency_hz: ArrayLike,
+    model: SelfNoiseModel = SelfNoiseModel(),  # noqa: B008 - frozen
     n_azimuths: int = 24,
-    trip: Trip = "none",
-    tip: Tip = "rounded",
-    layer: BoundaryLayer | None = None,
 ) -> SelfNoise:
     """Third-octave mean squares of a rotor's self-noise, averaged over the turn.
 
     Parameters
     ----------
     strips : StripFlow
-        Blade 1 at azimuth 0.
+        Strips of blade 1 at azimuth 0.
     n_blades : int
         Number of equal blades (static).
-    rotation_speed : float
-        Omega about +z [rad/s].
-    speed : float
-        Speed V of the rotor and the observers along +z, subsonic [m/s].
-    sound_speed, kinematic_viscosity : float
-        Of the air [m/s], [m^2/s].
+    state : RotorState
+        Rotation speed Omega about +z, speed V of the rotor and the observers along +z, subsonic,
+        and the air.
     observers : (n_observers, 3) array
         Positions from the rotor centre, moving with it [m].
     frequency_hz : (n_bands,) array
         Mid-band frequencies heard, see `third_octave_centers` [Hz].
+    model : SelfNoiseModel
+        Trip of the boundary layer and planform of the tip (static).
     n_azimuths : int
         Equal steps of the turn (static).
-    trip : {"none", "light", "heavy"}
-        How the boundary layer is tripped (static).
-    tip : {"rounded", "square"}
-        Planform of the tip (static).
-    layer : BoundaryLayer, optional
-        Boundary layer of the strips by another model, arrays like those of the sections; without
-        it the fits of `boundary_layer`.
 
     Returns
     -------
     SelfNoise
-        Each mechanism (n_observers, n_bands) [Pa^2].
+        Mean squares of each mechanism, (n_observers, n_bands) [Pa^2].
 
     Notes
     -----
@@ -114,34 +103,29 @@ def rotor_self_noise(
     T. F. Brooks, D. S. Pope, M. A. Marcolini, NASA RP-1218 (1989). T. F. Brooks, C. L. Burley,
     Rotor broadband noise prediction with comparison to model data, AIAA 2001-2210.
     """
-    section = strips.section
+    state = jax.tree.map(lambda q: jnp.asarray(q, float), state)
+    section, layer, air = strips.section, strips.layer, state.air
     if layer is None:
         layer = boundary_layer(
-            section.chord, section.speed, section.angle_of_attack, kinematic_viscosity, trip
+            section.chord,
+            section.speed,
+            section.angle_of_attack,
+            air.kinematic_viscosity,
+            model.trip,
         )
     frequency = jnp.asarray(frequency_hz, float)[:, None, None]
-    omega, sound_speed = jnp.asarray(rotation_speed, float), jnp.asarray(sound_speed, float)
 
     @jax.checkpoint  # the reverse derivative recomputes one observer at a time
-    def hear(observer: Array) -> SelfNoise:
-        sight, stretch = _emission(strips.position, observer, omega, speed, sound_speed, n_azimuths)
+    def noise_at(observer: Array) -> SelfNoise:
+        sight, stretch = _emission(strips.position, observer, state, n_azimuths)
         chordwise, spanwise, normal = (
             sight[0] * x + sight[1] * y + sight[2] * z for x, y, z in (e.T for e in _axes(strips))
         )
-        radiated = radiation(chordwise, spanwise, normal, section.speed / sound_speed)
+        radiated = radiation(chordwise, spanwise, normal, section.speed / air.sound_speed)
         emitted = frequency * stretch  # (band, azimuth, strip)
-        edge = trailing_edge_noise(
-            emitted, section, layer, radiated, sound_speed, kinematic_viscosity, trip
-        )
-        vortex = tip_noise(
-            emitted[..., -1],
-            section.chord[..., -1],
-            section.speed[..., -1],
-            section.angle_of_attack[..., -1],
-            radiated.high[..., -1],
-            sound_speed,
-            tip,
-        )
+        edge = trailing_edge_noise(emitted, section, layer, radiated, air, model.trip)
+        last, radiated_last = jax.tree.map(lambda q: q[..., -1], (section, radiated))
+        vortex = tip_noise(emitted[..., -1], last, radiated_last, air, model.tip)
         # Heard for dt = stretch dtau: that is its weight in the observer's time.
         share = n_blades / n_azimuths
         return SelfNoise(
@@ -149,7 +133,7 @@ def rotor_self_noise(
             tip=share * (vortex @ stretch[:, -1]),
         )
 
-    return jax.lax.map(hear, jnp.asarray(observers, float))
+    return jax.lax.map(noise_at, jnp.asarray(observers, float))
 
 
 def _axes(strips: StripFlow) -> tuple[Array, Array, Array]:
@@ -159,12 +143,7 @@ def _axes(strips: StripFlow) -> tuple[Array, Array, Array]:
 
 
 def _emission(
-    position: Array,
-    observer: Array,
-    omega: Array,
-    speed: ArrayLike,
-    sound_speed: Array,
-    n_azimuths: int,
+    position: Array, observer: Array, state: RotorState, n_azimuths: int
 ) -> tuple[tuple[Array, Array, Array], Array]:
     """Lines of sight from emission to reception, in the blade's frame, and dt / dtau.
 
@@ -176,11 +155,10 @@ def _emission(
     sx = cos * observer[0] + sin * observer[1] - x
     sy = cos * observer[1] - sin * observer[0] - y
     sz = observer[2] - z
-    # The observer flies on while the sound is under way: d = |s + M d e_z|.
-    m = jnp.asarray(speed, float) / sound_speed
-    s2 = sx**2 + sy**2 + sz**2
-    d = (sz * m + jnp.sqrt((sz * m) ** 2 + (1 - m**2) * s2)) / (1 - m**2)
+    m = state.mach
+    d = emission_distance(sz * m, sx**2 + sy**2 + sz**2, m**2)
     rz = sz + m * d
-    towards = omega * (x * sy - y * sx) / (sound_speed * d)  # Mach number of the rotation
+    # Mach number of the rotation
+    towards = state.rotation_speed * (x * sy - y * sx) / (state.air.sound_speed * d)
     axial = m * rz / d
     return (sx, sy, rz), (1 - towards - axial) / (1 - axial)

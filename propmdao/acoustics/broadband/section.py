@@ -9,7 +9,6 @@ from typing import NamedTuple
 
 import jax.numpy as jnp
 from jax import Array
-from jax.typing import ArrayLike
 
 from propmdao.acoustics.broadband import shedding_spectra, turbulent_spectra
 from propmdao.acoustics.broadband.boundary_layer import (
@@ -20,6 +19,7 @@ from propmdao.acoustics.broadband.boundary_layer import (
 )
 from propmdao.acoustics.broadband.shedding_spectra import BluntCurve
 from propmdao.acoustics.broadband.smooth import smooth_step
+from propmdao.records.air import Air
 from propmdao.records.pytrees import record
 
 _STALL = 1.0  # half width of the change from attached to separated flow [deg]
@@ -118,9 +118,7 @@ class BluntStrip(NamedTuple):
     edge_degrees: Array
 
 
-def turbulent_strip(
-    section: Section, layer: BoundaryLayer, sound_speed: ArrayLike, viscosity: ArrayLike
-) -> TurbulentStrip:
+def turbulent_strip(section: Section, layer: BoundaryLayer, air: Air) -> TurbulentStrip:
     """Trailing-edge noise of a strip: all that does not depend on frequency and observer.
 
     Parameters
@@ -129,16 +127,17 @@ def turbulent_strip(
         The strips.
     layer : BoundaryLayer
         Their boundary layer.
-    sound_speed, viscosity : float
-        Of the air [m/s], kinematic [m^2/s].
+    air : Air
+        The air.
 
     Returns
     -------
     TurbulentStrip
-        Of the shape of the section.
+        Arrays of the shape of the section.
     """
     speed, degrees = nonzero_speed(section.speed), absolute_degrees(section.angle_of_attack)
-    mach, reynolds = speed / sound_speed, speed * nonzero_chord(section.chord) / viscosity
+    viscosity = air.kinematic_viscosity
+    mach, reynolds = speed / air.sound_speed, speed * nonzero_chord(section.chord) / viscosity
     log_u = jnp.log10(speed)
     log_delta_p = jnp.log10(layer.displacement_pressure)
     log_delta_s = jnp.log10(layer.displacement_suction)
@@ -155,14 +154,14 @@ def turbulent_strip(
         log_st_p=log_delta_p - log_u - st1,  # 31
         log_st_s=log_delta_s - log_u - st1_mean,
         log_st_alpha=log_delta_s - log_u - st2,
-        a_r=turbulent_spectra.interpolation_a(reynolds),
-        a_r_stalled=turbulent_spectra.interpolation_a(3 * reynolds),
-        b_r=turbulent_spectra.interpolation_b(reynolds),
+        a_r=turbulent_spectra.SHAPE_A.interpolation(reynolds),
+        a_r_stalled=turbulent_spectra.SHAPE_A.interpolation(3 * reynolds),
+        b_r=turbulent_spectra.SHAPE_B.interpolation(reynolds),
         stalled=smooth_step(degrees - turbulent_spectra.stall_angle(mach), _STALL),
     )
 
 
-def laminar_strip(section: Section, layer: BoundaryLayer, viscosity: ArrayLike) -> LaminarStrip:
+def laminar_strip(section: Section, layer: BoundaryLayer, air: Air) -> LaminarStrip:
     """Laminar vortex shedding of a strip: all that does not depend on frequency and observer.
 
     Parameters
@@ -171,16 +170,16 @@ def laminar_strip(section: Section, layer: BoundaryLayer, viscosity: ArrayLike) 
         The strips.
     layer : BoundaryLayer
         Their boundary layer.
-    viscosity : float
-        Kinematic viscosity of the air [m^2/s].
+    air : Air
+        The air.
 
     Returns
     -------
     LaminarStrip
-        Of the shape of the section.
+        Arrays of the shape of the section.
     """
     speed, degrees = nonzero_speed(section.speed), absolute_degrees(section.angle_of_attack)
-    log_re = jnp.log10(speed * nonzero_chord(section.chord) / viscosity)
+    log_re = jnp.log10(speed * nonzero_chord(section.chord) / air.kinematic_viscosity)
     log_delta = jnp.log10(layer.thickness_pressure)
     g2 = shedding_spectra.laminar_reynolds_level(log_re, degrees)
     return LaminarStrip(
@@ -204,7 +203,7 @@ def blunt_strip(section: Section, layer: BoundaryLayer) -> BluntStrip:
     Returns
     -------
     BluntStrip
-        Of the shape of the section.
+        Arrays of the shape of the section.
     """
     h = section.trailing_edge_thickness + _SHARP * nonzero_chord(section.chord)
     ratio = 2 * h / (layer.displacement_pressure + layer.displacement_suction)  # 73

@@ -6,7 +6,7 @@ report's decibels are inside the functions only.
 
 from __future__ import annotations
 
-from typing import Literal, NamedTuple
+from typing import NamedTuple
 
 import jax
 import jax.numpy as jnp
@@ -18,7 +18,6 @@ from numpy.typing import NDArray
 from propmdao.acoustics.broadband import shedding_spectra, turbulent_spectra
 from propmdao.acoustics.broadband.boundary_layer import (
     BoundaryLayer,
-    Trip,
     absolute_degrees,
     nonzero_chord,
     nonzero_speed,
@@ -32,10 +31,9 @@ from propmdao.acoustics.broadband.section import (
 )
 from propmdao.acoustics.broadband.smooth import ramp
 from propmdao.acoustics.levels.decibels import REFERENCE_PRESSURE
+from propmdao.records.air import Air
+from propmdao.records.models import Tip, Trip
 from propmdao.records.pytrees import record
-
-#: Shape of the blade tip seen from above the blade.
-Tip = Literal["rounded", "square"]
 
 
 @record
@@ -86,7 +84,7 @@ def third_octave_centers(lowest_hz: float = 100.0, highest_hz: float = 80e3) -> 
     Parameters
     ----------
     lowest_hz, highest_hz : float
-        The bands that hold these and all between [Hz].
+        Frequencies in the lowest and the highest band [Hz].
 
     Returns
     -------
@@ -103,8 +101,7 @@ def trailing_edge_noise(
     section: Section,
     layer: BoundaryLayer,
     radiated: Radiation,
-    sound_speed: ArrayLike,
-    kinematic_viscosity: ArrayLike,
+    air: Air,
     trip: Trip = "none",
 ) -> EdgeNoise:
     """Third-octave mean squares of the mechanisms of a trailing edge.
@@ -116,39 +113,39 @@ def trailing_edge_noise(
     section : Section
         The strips.
     layer : BoundaryLayer
-        Their boundary layer, by `boundary_layer` or by another model.
+        Boundary layer of the strips, by `boundary_layer` or by another model.
     radiated : Radiation
-        Toward the observers, by `radiation`.
-    sound_speed, kinematic_viscosity : float
-        Of the air [m/s], [m^2/s].
+        Directivity toward the observers, by `radiation`.
+    air : Air
+        The air; the report's levels have no term for its density.
     trip : {"none", "light", "heavy"}
         A tripped boundary layer has no laminar vortex shedding (static).
 
     Returns
     -------
     EdgeNoise
-        Of the shape to which frequency, section and radiation broadcast.
+        Mean squares of the shape to which frequency, section and radiation broadcast.
 
     Notes
     -----
     Around the stall the turbulent mechanisms change over within 1 deg to either side, where the
     report steps. Beyond it the report has no pressure and suction side.
     """
-    strip = turbulent_strip(section, layer, sound_speed, kinematic_viscosity)
-    laminar = laminar_strip(section, layer, kinematic_viscosity)
+    strip = turbulent_strip(section, layer, air)
+    laminar = laminar_strip(section, layer, air)
     blunt = blunt_strip(section, layer)
     # What belongs to a strip alone is not worked out again for every frequency and observer, as
     # XLA would when it fuses all into one loop.
     strip, laminar, blunt = jax.lax.optimization_barrier((strip, laminar, blunt))
 
-    mach = nonzero_speed(section.speed) / sound_speed
+    mach = nonzero_speed(section.speed) / air.sound_speed
     log_f, edge = jnp.log10(frequency_hz), mach**5 * section.span
     attached = (1 - strip.stalled) * edge * radiated.high
     separated = strip.stalled * edge * radiated.low
-    a_p = turbulent_spectra.shape_a(log_f + strip.log_st_p, strip.a_r)
-    a_s = turbulent_spectra.shape_a(log_f + strip.log_st_s, strip.a_r)
-    b = turbulent_spectra.shape_b(log_f + strip.log_st_alpha, strip.b_r)
-    a_stalled = turbulent_spectra.shape_a(log_f + strip.log_st_alpha, strip.a_r_stalled)
+    a_p = turbulent_spectra.SHAPE_A.level(log_f + strip.log_st_p, strip.a_r)
+    a_s = turbulent_spectra.SHAPE_A.level(log_f + strip.log_st_s, strip.a_r)
+    b = turbulent_spectra.SHAPE_B.level(log_f + strip.log_st_alpha, strip.b_r)
+    a_stalled = turbulent_spectra.SHAPE_A.level(log_f + strip.log_st_alpha, strip.a_r_stalled)
     separation = attached * _power(b + strip.level_alpha)  # 27
     separation += separated * _power(a_stalled + strip.level_alpha)  # 30
     g1 = shedding_spectra.laminar_shape(log_f + laminar.log_strouhal)
@@ -166,13 +163,7 @@ def trailing_edge_noise(
 
 
 def tip_noise(
-    frequency_hz: ArrayLike,
-    chord: ArrayLike,
-    speed: ArrayLike,
-    angle_of_attack: ArrayLike,
-    radiated_high: ArrayLike,
-    sound_speed: ArrayLike,
-    tip: Tip = "rounded",
+    frequency_hz: ArrayLike, section: Section, radiated: Radiation, air: Air, tip: Tip = "rounded"
 ) -> Array:
     """Third-octave mean squares of the tip vortex.
 
@@ -180,12 +171,13 @@ def tip_noise(
     ----------
     frequency_hz : array
         Mid-band frequencies at the source, positive [Hz].
-    chord, speed, angle_of_attack : array
-        At the tip [m], [m/s], [rad]; the angle from zero lift, reduced by the tip's own inflow.
-    radiated_high : array
-        High-frequency directivity over squared distance [1/m^2].
-    sound_speed : float
-        Of the air [m/s].
+    section : Section
+        Section at the tip: its chord, speed and angle from zero lift, reduced by the tip's own
+        inflow, count.
+    radiated : Radiation
+        Directivity of the tip toward the observers, by `radiation`; only `high` counts.
+    air : Air
+        The air.
     tip : {"rounded", "square"}
         Planform of the tip (static).
 
@@ -198,16 +190,17 @@ def tip_noise(
     ----------
     Equations 61 to 67; at 2 deg the two lines of a square tip are rounded within 0.25 deg.
     """
-    degrees, mach = absolute_degrees(angle_of_attack), nonzero_speed(speed) / sound_speed
+    degrees = absolute_degrees(section.angle_of_attack)
+    mach = nonzero_speed(section.speed) / air.sound_speed
     if tip == "rounded":
         over_chord = 0.008 * degrees  # 63
     else:
         over_chord = 0.0230 + 0.0169 * degrees - (0.0169 - 0.0095) * ramp(degrees - 2, 0.25)  # 67
-    length = over_chord * nonzero_chord(chord)
+    length = over_chord * nonzero_chord(section.chord)
     mach_max = mach * (1 + 0.036 * degrees)  # 64
-    strouhal = jnp.asarray(frequency_hz) * length / (mach_max * sound_speed)  # 62, 65
+    strouhal = jnp.asarray(frequency_hz) * length / (mach_max * air.sound_speed)  # 62, 65
     shape = 126 - 30.5 * (jnp.log10(strouhal) + 0.3) ** 2
-    return mach**2 * mach_max**3 * length**2 * radiated_high * _power(shape)  # 61
+    return mach**2 * mach_max**3 * length**2 * radiated.high * _power(shape)  # 61
 
 
 def _power(level_db: Array) -> Array:

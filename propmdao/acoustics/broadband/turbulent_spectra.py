@@ -7,6 +7,8 @@ less than 0.15 dB where not said otherwise. Angles are in degrees, levels in dB.
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import jax.numpy as jnp
 from jax import Array
 
@@ -20,103 +22,95 @@ _END_OF_K2 = -12.0  # dB, far beyond the stall
 _LEVEL_CORNER = 1.0  # dB
 
 
-def shape_a(x: Array, interpolation: Array) -> Array:
-    """Spectral shape A (equations 35, 36, 40).
+class _Curve(NamedTuple):
+    """Line (start, slope, intercept) that follows the arc of a shape, and a cubic beyond `end`."""
 
-    Parameters
+    line: tuple[float, float, float]
+    end: float
+    cubic: tuple[float, float, float, float]
+
+
+class Shape(NamedTuple):
+    """Spectral shape between its curves at the lowest and at the highest Reynolds number.
+
+    Attributes
     ----------
-    x : array
-        log10 of the Strouhal number over its peak value, of either sign (37).
-    interpolation : array
-        `interpolation_a`.
-
-    Returns
-    -------
-    array
-        Level [dB], 0 at the peak.
+    height, offset : float
+        Numbers of the arc around the peak.
+    low, high : curve
+        Line and cubic at the lowest and at the highest Reynolds number, A_min and A_max.
+    reference : (2,) tuple of float
+        Abscissa at which the shape is -20 dB, at the lowest and at the highest Reynolds number.
     """
-    x = jnp.abs(x)
-    low = _arc(x, 67.552, 8.219, (0.204, -32.665, 3.981), 0.244,
-               (-142.795, 103.656, -57.757, 6.006))  # fmt: skip
-    high = _arc(x, 67.552, 8.219, (0.13, -15.901, 1.098), 0.321,
-                (-4.669, 3.491, -16.699, 1.149))  # fmt: skip
-    return low + interpolation * (high - low)
+
+    height: float
+    offset: float
+    low: _Curve
+    high: _Curve
+    reference: tuple[float, float]
+
+    def level(self, x: Array, interpolation: Array) -> Array:
+        """Level relative to the peak (equations 40, 46).
+
+        Parameters
+        ----------
+        x : array
+            log10 of the Strouhal number over its peak value, of either sign (37, 43).
+        interpolation : array
+            Interpolation factor of the Reynolds number.
+
+        Returns
+        -------
+        array
+            Level [dB], 0 at the peak.
+        """
+        x = jnp.abs(x)
+        low, high = (self._at(x, curve) for curve in (self.low, self.high))
+        return low + interpolation * (high - low)
+
+    def interpolation(self, reynolds: Array) -> Array:
+        """Interpolation factor between the two curves (equations 38, 39 and 44, 45).
+
+        Parameters
+        ----------
+        reynolds : array
+            Reynolds number of the chord.
+
+        Returns
+        -------
+        array
+            A_R(a0) or B_R(b0): 0 at the lower curve, 1 at the higher one.
+        """
+        x = _between_reynolds(reynolds, *self.reference)
+        low, high = self.level(x, jnp.asarray(0.0)), self.level(x, jnp.asarray(1.0))
+        return (-20.0 - low) / (high - low)
+
+    def _at(self, x: Array, curve: _Curve) -> Array:
+        start, slope, intercept = curve.line
+        # The arc is evaluated where its root is real: the branch not taken must not make a NaN.
+        root = jnp.sqrt(self.height - 886.788 * jnp.square(jnp.minimum(x, start)))
+        c3, c2, c1, c0 = curve.cubic
+        tail = ((c3 * x + c2) * x + c1) * x + c0
+        beyond = jnp.where(x < curve.end, slope * x + intercept, tail)
+        return jnp.where(x < start, root - self.offset, beyond)
 
 
-def shape_b(x: Array, interpolation: Array) -> Array:
-    """Spectral shape B of separated flow (equations 41, 42, 46).
-
-    Parameters
-    ----------
-    x : array
-        log10 of the Strouhal number over its peak value, of either sign (43).
-    interpolation : array
-        `interpolation_b`.
-
-    Returns
-    -------
-    array
-        Level [dB], 0 at the peak.
-    """
-    x = jnp.abs(x)
-    low = _arc(x, 16.888, 4.109, (0.13, -83.607, 8.138), 0.145,
-               (-817.810, 355.210, -135.024, 10.619))  # fmt: skip
-    high = _arc(x, 16.888, 4.109, (0.10, -31.330, 1.854), 0.187,
-                (-80.541, 44.174, -39.381, 2.344))  # fmt: skip
-    return low + interpolation * (high - low)
-
-
-def _arc(
-    x: Array,
-    height: float,
-    offset: float,
-    line: tuple[float, float, float],
-    end: float,
-    cubic: tuple[float, float, float, float],
-) -> Array:
-    """Arc around the peak, a line (start, slope, intercept), a cubic beyond `end`; x >= 0."""
-    start, slope, intercept = line
-    # The arc is evaluated where its root is real: the branch not taken must not make a NaN.
-    arc = jnp.sqrt(height - 886.788 * jnp.square(jnp.minimum(x, start))) - offset
-    c3, c2, c1, c0 = cubic
-    tail = ((c3 * x + c2) * x + c1) * x + c0
-    return jnp.where(x < start, arc, jnp.where(x < end, slope * x + intercept, tail))
-
-
-def interpolation_a(reynolds: Array) -> Array:
-    """Where A lies between its lowest and highest Reynolds number (equations 38, 39).
-
-    Parameters
-    ----------
-    reynolds : array
-        Reynolds number of the chord.
-
-    Returns
-    -------
-    array
-        Interpolation factor A_R(a0).
-    """
-    a0 = _between_reynolds(reynolds, 0.57, 1.13)
-    low, high = shape_a(a0, jnp.asarray(0.0)), shape_a(a0, jnp.asarray(1.0))
-    return (-20.0 - low) / (high - low)
-
-
-def interpolation_b(reynolds: Array) -> Array:
-    """Where B lies between its lowest and highest Reynolds number (equations 44, 45).
-
-    Parameters
-    ----------
-    reynolds : array
-        Reynolds number of the chord.
-
-    Returns
-    -------
-    array
-        Interpolation factor B_R(b0).
-    """
-    b0 = _between_reynolds(reynolds, 0.30, 0.56)
-    low, high = shape_b(b0, jnp.asarray(0.0)), shape_b(b0, jnp.asarray(1.0))
-    return (-20.0 - low) / (high - low)
+#: Shape A of attached flow (equations 35, 36).
+SHAPE_A = Shape(
+    67.552,
+    8.219,
+    low=_Curve((0.204, -32.665, 3.981), 0.244, (-142.795, 103.656, -57.757, 6.006)),
+    high=_Curve((0.13, -15.901, 1.098), 0.321, (-4.669, 3.491, -16.699, 1.149)),
+    reference=(0.57, 1.13),
+)
+#: Shape B of separated flow (equations 41, 42).
+SHAPE_B = Shape(
+    16.888,
+    4.109,
+    low=_Curve((0.13, -83.607, 8.138), 0.145, (-817.810, 355.210, -135.024, 10.619)),
+    high=_Curve((0.10, -31.330, 1.854), 0.187, (-80.541, 44.174, -39.381, 2.344)),
+    reference=(0.30, 0.56),
+)
 
 
 def _between_reynolds(reynolds: Array, low: float, high: float) -> Array:
@@ -143,7 +137,7 @@ def strouhal_peaks(mach: Array, degrees: Array) -> tuple[Array, Array, Array]:
     Returns
     -------
     st1, st1_mean, st2 : array
-        Of the pressure side, of the suction side and of the separation.
+        Peaks of the pressure side, of the suction side and of the separation.
     """
     st1 = 0.02 * mach**-0.6
     beyond = jnp.maximum(12.5 - ramp(12.5 - degrees, _ANGLE_CORNER) - 1.333, 0.0)

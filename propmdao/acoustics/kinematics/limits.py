@@ -6,50 +6,51 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from propmdao.acoustics.kinematics.observers import directions
+from propmdao.records.air import Air
+from propmdao.records.states import RotorState
 
 
-def require_subsonic_tip(
-    radius: float, rotation_speed: float, speed: float, sound_speed: float
-) -> None:
+def require_subsonic_tip(radius: float, state: RotorState) -> None:
     """Refuse a rotor whose blade tip moves through the air at or above the speed of sound.
 
     Parameters
     ----------
     radius : float
         Tip radius [m].
-    rotation_speed : float
-        Omega [rad/s].
-    speed, sound_speed : float
-        Flight speed along the axis and speed of sound [m/s].
+    state : RotorState
+        Rotation speed, flight speed along the axis and air; not traceable by JAX.
 
     Raises
     ------
     ValueError
         If the relative tip Mach number is 1 or more: Formulation 1A is singular there.
     """
-    mach = np.hypot(rotation_speed * radius, speed) / sound_speed
+    mach = np.hypot(state.rotation_speed * radius, state.speed) / state.air.sound_speed
     if not mach < 1:
         raise ValueError(
             f"relative tip Mach number must be below 1 for Formulation 1A; it is {mach:.3f} "
-            f"(radius {radius:g} m, {rotation_speed:g} rad/s, {speed:g} m/s)"
+            f"(radius {radius:g} m, {state.rotation_speed:g} rad/s, {state.speed:g} m/s)"
         )
 
 
-def require_air(density: float, sound_speed: float) -> None:
-    """Refuse air that is none.
+def require_air(air: Air) -> None:
+    """Refuse air without density or speed of sound.
 
     Parameters
     ----------
-    density, sound_speed : float
-        [kg/m^3], [m/s].
+    air : Air
+        State of the air; not traceable by JAX.
 
     Raises
     ------
     ValueError
         If one of them is not positive.
     """
-    for name, value, unit in (("density", density, "kg/m3"), ("sound speed", sound_speed, "m/s")):
-        if not (np.isfinite(value) and value > 0):
+    for name, value, unit in (
+        ("density", air.density, "kg/m3"),
+        ("sound speed", air.sound_speed, "m/s"),
+    ):
+        if not 0 < value < np.inf:
             raise ValueError(f"{name} must be positive; it is {value:g} {unit}")
 
 
@@ -61,7 +62,7 @@ def require_outside_rotor(positions: ArrayLike, tip_radius: float) -> None:
     positions : (n_observers, 3) array_like
         From the rotor centre [m].
     tip_radius : float
-        Of the rotor: the sphere of this radius around its centre holds all sources [m].
+        Radius of the sphere around the rotor centre that holds all sources [m].
 
     Raises
     ------
@@ -69,7 +70,9 @@ def require_outside_rotor(positions: ArrayLike, tip_radius: float) -> None:
         If an observer is not outside that sphere, with its distance.
     """
     radius = directions(np.reshape(positions, (-1, 3))).radius
-    for k in np.flatnonzero(~(radius > tip_radius)):
+    inside = np.flatnonzero(~(radius > tip_radius))
+    if inside.size:
+        k = inside[0]
         raise ValueError(
             f"observer {k + 1} is inside the source region: {radius[k]:.4g} m from the rotor "
             f"centre; sources reach to {tip_radius:.4g} m"

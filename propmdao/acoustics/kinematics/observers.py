@@ -32,6 +32,17 @@ class Directions(NamedTuple):
     elevation_deg: NDArray[np.float64]
     azimuth_deg: NDArray[np.float64]
 
+    def rounded(self) -> Directions:
+        """The same without what rounding leaves of zero: to 1e-9 m and deg.
+
+        Returns
+        -------
+        Directions
+            For columns, tables and JSON.
+        """
+        # Adding zero makes a zero that has a sign one that has none.
+        return Directions(*(np.round(values, 9) + 0.0 for values in self))
+
 
 def point(radius: ArrayLike, elevation_deg: ArrayLike, azimuth_deg: ArrayLike = 0.0) -> Positions:
     """Place observers by direction and distance.

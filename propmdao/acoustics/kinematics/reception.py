@@ -203,7 +203,9 @@ def require_outside(
             )
 
 
-def hear(arrival: Array, pressure: Array, start: Array, step: Array, n: int, each: int) -> Array:
+def sum_on_clock(
+    arrival: Array, pressure: Array, start: Array, step: Array, n: int, each: int
+) -> Array:
     """Interpolate what arrives from every source to the observer's clock, and sum over sources.
 
     Parameters
@@ -238,13 +240,13 @@ def hear(arrival: Array, pressure: Array, start: Array, step: Array, n: int, eac
     d0123 = (d123 - d012) / (t3 - t0)
     first = jnp.ceil((t1 - start) / step)
 
-    def add(k: int, heard: Array) -> Array:
+    def add(k: int, record: Array) -> Array:
         tick = first + k
         t = start + tick * step
         p = p0 + (t - t0) * (d01 + (t - t1) * (d012 + (t - t2) * d0123))
         inside = (tick >= 0) & (tick < n) & (t < t2)
         slot = jnp.where(inside, tick, n).astype(int)
-        return heard.at[slot].add(jnp.where(inside, p, 0.0), mode="promise_in_bounds")
+        return record.at[slot].add(jnp.where(inside, p, 0.0), mode="promise_in_bounds")
 
     # the last one takes what is outside the record
     return jax.lax.fori_loop(0, each, add, jnp.zeros(n + 1))[:n]

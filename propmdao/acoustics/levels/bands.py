@@ -16,7 +16,8 @@ from scipy.interpolate import PchipInterpolator
 
 from propmdao.acoustics.levels.decibels import level_db, mean_square
 
-_HALF_BAND = 10**0.05  # from the middle of a band to its edge (IEC 61260-1, base ten)
+#: From the middle of a third octave to its edge, as a factor (IEC 61260-1, base ten).
+HALF_BAND = 10**0.05
 _ROUNDS = 30  # each leaves of the error the share of a band that is in bins across its edges
 
 
@@ -137,13 +138,13 @@ def bands_in_bins(
         raise ValueError(f"bands must be neighbouring third octaves; got {center} Hz")
     bins = np.asarray(bin_hz, float)
     edges = _bin_edges(bins)
-    narrowest = center[0] * (_HALF_BAND - 1 / _HALF_BAND)
+    narrowest = center[0] * (HALF_BAND - 1 / HALF_BAND)
     if bins[1] - bins[0] > narrowest:
         raise ValueError(
             f"bins of {bins[1] - bins[0]:g} Hz are wider than the band around {center[0]:.4g} Hz, "
             f"{narrowest:.3g} Hz"
         )
-    low, high = center[0] / _HALF_BAND, center[-1] * _HALF_BAND
+    low, high = center[0] / HALF_BAND, center[-1] * HALF_BAND
     if not edges[0] <= low <= high <= edges[-1]:
         raise ValueError(
             f"bins from {edges[0]:.4g} to {edges[-1]:.4g} Hz do not cover the bands, "
@@ -157,11 +158,11 @@ def bands_in_bins(
 def _spread(center: NDArray, wanted: NDArray, bins: NDArray, edges: NDArray) -> NDArray:
     if not np.any(wanted > 0):
         return np.zeros_like(bins)
-    owner = np.searchsorted(center * _HALF_BAND, bins, side="right")
-    within = (bins >= center[0] / _HALF_BAND) & (owner < center.size)
+    owner = np.searchsorted(center * HALF_BAND, bins, side="right")
+    within = (bins >= center[0] / HALF_BAND) & (owner < center.size)
     owner = np.minimum(owner, center.size - 1)
-    log_f = np.log(np.clip(bins, center[0] / _HALF_BAND, center[-1] * _HALF_BAND))
-    nodes = np.log(np.r_[center[0] / _HALF_BAND, center, center[-1] * _HALF_BAND])
+    log_f = np.log(np.clip(bins, center[0] / HALF_BAND, center[-1] * HALF_BAND))
+    nodes = np.log(np.r_[center[0] / HALF_BAND, center, center[-1] * HALF_BAND])
     # A curve need not reach below 100 dB under the loudest band: the gain below does the rest.
     floor = np.log(1e-10 * wanted.max())
     target = np.maximum(np.log(wanted, out=np.full_like(wanted, floor), where=wanted > 0), floor)
@@ -184,7 +185,7 @@ def _gains(
     """Factors of the bands' own bins by which bands hold what is wanted, shared bins divided."""
     # held[b, o]: what band b holds of the bins that are mostly band o's.
     held = np.diag(np.bincount(owner, energy, center.size))
-    limits = np.append(center / _HALF_BAND, center[-1] * _HALF_BAND)
+    limits = np.append(center / HALF_BAND, center[-1] * HALF_BAND)
     position = (limits - edges[0]) / (edges[1] - edges[0])
     shared = np.minimum(position.astype(int), energy.size - 1)
     for upper, (k, below) in enumerate(zip(shared, position - shared, strict=True)):
@@ -202,7 +203,7 @@ def _gains(
 def _energy(mean_square: NDArray, edges: NDArray, center: NDArray) -> NDArray:
     """Mean squares in bands, bins across an edge divided."""
     n = edges.size - 1
-    limits = np.append(center / _HALF_BAND, center[-1] * _HALF_BAND)
+    limits = np.append(center / HALF_BAND, center[-1] * HALF_BAND)
     # In bins, from the lower edge of the first one; nothing is outside of them.
     limits = np.clip((limits - edges[0]) / (edges[-1] - edges[0]) * n, 0, n)
     bands = []

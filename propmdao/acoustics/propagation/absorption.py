@@ -1,6 +1,6 @@
-"""What the way to the observer does to sound: absorption by the air, reflection by the ground.
+"""Absorption of sound by the air on its way to the observer (ISO 9613-1).
 
-Pure JAX, differentiable. Spreading is none of it: the sources' formulas have it.
+Pure JAX, differentiable. The spreading of sound is not in it: the formulas of the sources have it.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ def absorption_db_per_m(frequency_hz: ArrayLike, air: Air) -> Array:
     frequency_hz : array
         Frequencies [Hz], any shape.
     air : Air
-        Its state; the standard gives 10 % in alpha from -20 to 50 degrees Celsius.
+        State of the air; the standard gives 10 % in alpha from -20 to 50 degrees Celsius.
 
     Returns
     -------
@@ -52,11 +52,11 @@ def absorb(mean_square: ArrayLike, frequency_hz: ArrayLike, distance: ArrayLike,
     mean_square : (..., n) array
         Mean-square pressures [Pa^2] without absorption.
     frequency_hz : (n,) or (..., n) array
-        Their frequencies, mid-band ones of third octaves, as fixed observers hear them [Hz].
+        Frequencies, of third octaves the mid-band ones, as fixed observers hear them [Hz].
     distance : (...,) array
         Way of the sound from emission to reception [m].
     air : Air
-        Its state.
+        State of the air.
 
     Returns
     -------
@@ -78,20 +78,20 @@ def absorb_tones(tones: Tones, distance: ArrayLike, air: Air, doppler: ArrayLike
     Parameters
     ----------
     tones : Tones
-        At (n_observers,) without absorption.
+        Tones at (n_observers,) without absorption.
     distance : (n_observers,) array
         Way of the sound from emission to reception [m].
     air : Air
-        Its state.
+        State of the air.
     doppler : float or (n_observers,) array
         Frequency in the air over that which the observers hear, see `way_flying_along`.
 
     Returns
     -------
     Tones
-        Attenuated; the phase is not changed, for the dispersion of air is below 0.1 m/s.
+        Attenuated tones; the phase is not changed, for the dispersion of air is below 0.1 m/s.
     """
     way = jnp.asarray(distance, float)[..., None]
     frequency_hz = tones.frequency_hz * jnp.asarray(doppler, float)[..., None]
     factor = 10 ** (-0.05 * absorption_db_per_m(frequency_hz, air) * way)
-    return Tones(tones.frequency_hz, tones.thickness * factor, tones.loading * factor)
+    return tones.each(lambda amplitude: amplitude * factor)

@@ -1,4 +1,4 @@
-"""What is around a rotor and its observers: ground that reflects, air that absorbs.
+"""Ground that reflects and air that absorbs, around a rotor and its observers.
 
 Observers fly along with the rotor here, as they do for `tones` and `rotor_self_noise`; sound has
 one way to them or, over ground, two: what is heard is computed at the ends of all ways
@@ -13,16 +13,18 @@ from jax import Array
 from jax.typing import ArrayLike
 from numpy.typing import NDArray
 
+from propmdao.acoustics.kinematics.emission import emission_distance
 from propmdao.acoustics.propagation.absorption import absorb, absorb_tones
 from propmdao.acoustics.propagation.reflection import (
     bands_with_reflection,
     mirrored,
     on_hard_ground,
-    with_reflection,
 )
 from propmdao.acoustics.signals import Tones
+from propmdao.records.air import require_known_air
 from propmdao.records.listening import Surroundings
 from propmdao.records.pytrees import Scalar
+from propmdao.records.states import RotorState
 
 _ON_GROUND = 1e-9  # m: rounding of directions
 
@@ -35,9 +37,9 @@ def sound_paths(positions: ArrayLike, surroundings: Surroundings) -> Floats:
     Parameters
     ----------
     positions : (n_observers, 3) array
-        From the rotor centre, in its axes [m].
+        Positions from the rotor centre, in its axes [m].
     surroundings : Surroundings
-        With or without ground.
+        Ground, or none.
 
     Returns
     -------
@@ -54,7 +56,9 @@ def sound_paths(positions: ArrayLike, surroundings: Surroundings) -> Floats:
     if ground is None or isinstance(ground, str):
         return x[None]
     height = x @ np.asarray(surroundings.up) + ground
-    for k in np.flatnonzero(height < -_ON_GROUND):
+    below = np.flatnonzero(height < -_ON_GROUND)
+    if below.size:
+        k = below[0]
         raise ValueError(
             f"observer {k + 1} is {-height[k]:.4g} m below the ground, which is {ground:g} m below"
             " the rotor centre"
@@ -63,45 +67,46 @@ def sound_paths(positions: ArrayLike, surroundings: Surroundings) -> Floats:
 
 
 def tones_by_paths(
-    tones: Tones, paths: ArrayLike, mach: float, surroundings: Surroundings
+    tones: Tones, paths: ArrayLike, state: RotorState, surroundings: Surroundings
 ) -> Tones:
     """Tones at observers: of all ways together, in phase.
 
     Parameters
     ----------
     tones : Tones
-        At the ends of the ways, ``paths.reshape(-1, 3)``, in air without end.
+        Tones at the ends of the ways, ``paths.reshape(-1, 3)``, in air without end.
     paths : (n_ways, n_observers, 3) array
-        Of `sound_paths` [m].
-    mach : float
-        Of the flight along the axis.
+        Ways by `sound_paths` [m].
+    state : RotorState
+        Flight along the axis, and the air; where it absorbs, JAX cannot trace the air.
     surroundings : Surroundings
-        As they were for the paths.
+        Ground and air as they were for the paths.
 
     Returns
     -------
     Tones
-        At the (n_observers,).
+        Tones at the (n_observers,).
+
+    Raises
+    ------
+    ValueError
+        If the air is to absorb and is outside what ISO 9613-1 states.
     """
-    if surroundings.air is not None:
-        distance, doppler = way_flying_along(jnp.asarray(paths).reshape(-1, 3), mach)
-        tones = absorb_tones(tones, distance, surroundings.air, doppler)
+    if surroundings.absorption:
+        require_known_air(state.air)
+        distance, doppler = way_flying_along(jnp.asarray(paths).reshape(-1, 3), state.mach)
+        tones = absorb_tones(tones, distance, state.air, doppler)
     n_ways, n, _ = np.shape(paths)
     if n_ways == 1:
         return tones if surroundings.ground is None else on_hard_ground(tones)
-    direct, reflected = (
-        Tones(tones.frequency_hz, tones.thickness[k : k + n], tones.loading[k : k + n])
-        for k in (0, n)
-    )
-    return with_reflection(direct, reflected)
+    return tones.each(lambda amplitude: amplitude[:n]) + tones.each(lambda amplitude: amplitude[n:])
 
 
 def bands_by_paths(
     mean_square: ArrayLike,
     band_hz: ArrayLike,
     paths: ArrayLike,
-    mach: float,
-    sound_speed: float,
+    state: RotorState,
     surroundings: Surroundings,
 ) -> Array:
     """Broadband noise at observers, of all ways together.
@@ -109,22 +114,25 @@ def bands_by_paths(
     Parameters
     ----------
     mean_square : (n_ways * n_observers, n_bands) array
-        In third octaves at the ends of the ways, in air without end [Pa^2].
+        Third octaves at the ends of the ways, in air without end [Pa^2].
     band_hz : (n_bands,) array
-        Their mid-band frequencies [Hz].
+        Mid-band frequencies [Hz].
     paths : (n_ways, n_observers, 3) array
-        Of `sound_paths` [m].
-    mach : float
-        Of the flight along the axis.
-    sound_speed : float
-        [m/s].
+        Ways by `sound_paths` [m].
+    state : RotorState
+        Flight along the axis, and the air; where it absorbs, JAX cannot trace the air.
     surroundings : Surroundings
-        As they were for the paths.
+        Ground and air as they were for the paths.
 
     Returns
     -------
     (n_observers, n_bands) array
         Mean squares [Pa^2].
+
+    Raises
+    ------
+    ValueError
+        If the air is to absorb and is outside what ISO 9613-1 states.
 
     Notes
     -----
@@ -132,12 +140,13 @@ def bands_by_paths(
     """
     x, f = jnp.asarray(paths), jnp.asarray(band_hz, float)
     power = jnp.asarray(mean_square).reshape(*x.shape[:2], f.size)
-    distance, doppler = way_flying_along(x, mach)
-    if surroundings.air is not None:
-        power = absorb(power, f * doppler[..., None], distance, surroundings.air)
+    distance, doppler = way_flying_along(x, state.mach)
+    if surroundings.absorption:
+        require_known_air(state.air)
+        power = absorb(power, f * doppler[..., None], distance, state.air)
     if len(power) == 1:
         return power[0] if surroundings.ground is None else 4 * power[0]
-    delay = (distance[1] - distance[0]) / sound_speed
+    delay = (distance[1] - distance[0]) / state.air.sound_speed
     return bands_with_reflection(power[0], power[1], f, delay)
 
 
@@ -147,19 +156,17 @@ def way_flying_along(positions: ArrayLike, mach: Scalar) -> tuple[Array, Array]:
     Parameters
     ----------
     positions : (..., 3) array
-        From the source, at the same time [m].
+        Positions from the source, at the same time [m].
     mach : float
-        Of the flight, below 1.
+        Mach number of the flight, below 1.
 
     Returns
     -------
     distance : (...,) array
-        From the source at emission to the observer at reception [m].
+        Distance from the source at emission to the observer at reception [m].
     doppler : (...,) array
         Frequency in the air at rest over that which the observers hear, who move like the source.
     """
     x = jnp.asarray(positions, float)
-    # While the sound travels the observer flies on: d is the root of d = |x + M d e_z|.
-    ahead, beta2 = mach * x[..., 2], 1 - mach**2
-    d = (ahead + jnp.sqrt(ahead**2 + beta2 * jnp.sum(x**2, axis=-1))) / beta2
+    d = emission_distance(mach * x[..., 2], jnp.sum(x**2, axis=-1), mach**2)
     return d, 1 / (1 - mach * (x[..., 2] / d + mach))

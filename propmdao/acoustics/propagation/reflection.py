@@ -6,9 +6,8 @@ import jax.numpy as jnp
 from jax import Array
 from jax.typing import ArrayLike
 
+from propmdao.acoustics.levels.bands import HALF_BAND
 from propmdao.acoustics.signals import Tones
-
-_HALF_BAND = 10**0.05  # from the middle of a third octave to its edge
 
 
 def mirrored(
@@ -18,15 +17,15 @@ def mirrored(
 
     A rotor and its image below the ground are heard here as the rotor alone is heard here and at
     the mirrored place: so reflection needs no second rotor, but the same sources at twice as many
-    observers. The sums are `with_reflection` for tones and records of pressure, in phase, and of
-    the mean squares for broadband noise, whose two ways differ by many wavelengths.
+    observers. Tones and records of pressure of the two ways add in phase (``direct + reflected``);
+    broadband noise, whose two ways may differ by many wavelengths, by `bands_with_reflection`.
 
     Parameters
     ----------
     positions : (..., 3) array
         Observers [m], from the rotor centre or, with height 0, from a point of the ground.
     height : float
-        Of the origin above the ground [m].
+        Height of the origin above the ground [m].
     up : (3,) sequence
         Unit vector away from the ground, in the axes of `positions`: the default is for a rotor
         that hovers; a propeller in level flight has it across its axis.
@@ -38,26 +37,6 @@ def mirrored(
     """
     x, n = jnp.asarray(positions, float), jnp.asarray(up, float)
     return x - 2 * (x @ n + height)[..., None] * n
-
-
-def with_reflection(direct: Tones, reflected: Tones) -> Tones:
-    """Tones over hard ground: pressures of the two ways together, each with its own phase.
-
-    Parameters
-    ----------
-    direct, reflected : Tones
-        At the observers and at their `mirrored` positions.
-
-    Returns
-    -------
-    Tones
-        Their sum: up to 6 dB more, or next to nothing where the ways differ by half a wave.
-    """
-    return Tones(
-        direct.frequency_hz,
-        direct.thickness + reflected.thickness,
-        direct.loading + reflected.loading,
-    )
 
 
 def bands_with_reflection(
@@ -72,7 +51,7 @@ def bands_with_reflection(
     band_hz : (n_bands,) or (..., n_bands) array
         Mid-band frequencies [Hz].
     delay : (...,) array
-        By which the reflected sound comes later [s].
+        Time by which the reflected sound comes later [s].
 
     Returns
     -------
@@ -84,11 +63,11 @@ def bands_with_reflection(
     Noise of even density over a band, from a point: 6 dB where the delay is short beside the
     period, 3 dB where it is long, waves in between.
     """
-    one, other = jnp.asarray(direct, float), jnp.asarray(reflected, float)
+    first, second = jnp.asarray(direct, float), jnp.asarray(reflected, float)
     f, late = jnp.asarray(band_hz, float), jnp.asarray(delay, float)[..., None]
-    width, middle = f * (_HALF_BAND - 1 / _HALF_BAND), 0.5 * f * (_HALF_BAND + 1 / _HALF_BAND)
+    width, middle = f * (HALF_BAND - 1 / HALF_BAND), 0.5 * f * (HALF_BAND + 1 / HALF_BAND)
     together = jnp.cos(2 * jnp.pi * middle * late) * jnp.sinc(width * late)
-    return one + other + 2 * jnp.sqrt(one * other) * together
+    return first + second + 2 * jnp.sqrt(first * second) * together
 
 
 def on_hard_ground(tones: Tones) -> Tones:
@@ -97,11 +76,11 @@ def on_hard_ground(tones: Tones) -> Tones:
     Parameters
     ----------
     tones : Tones
-        Without ground.
+        Tones without ground.
 
     Returns
     -------
     Tones
-        With it. Mean squares of broadband noise are four times as high there.
+        Tones with it. Mean squares of broadband noise are four times as high there.
     """
-    return with_reflection(tones, tones)
+    return tones + tones

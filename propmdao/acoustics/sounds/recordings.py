@@ -9,7 +9,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from propmdao.acoustics.levels.bands import bands_in_bins
+from propmdao.acoustics.levels.bands import HALF_BAND, bands_in_bins
 
 #: [Hz]; holds all third octaves that are heard, up to 20 kHz.
 SAMPLE_RATE = 48000
@@ -131,7 +131,7 @@ def broadband_record(
         lowest band, or as in `bands_in_bins`.
     """
     center, wanted = np.asarray(center_hz, float), np.asarray(mean_square, float)
-    fits = center * 10**0.05 < sample_rate / 2
+    fits = center * HALF_BAND < sample_rate / 2
     if not np.any(fits):
         raise ValueError(
             f"sample rate of {sample_rate} Hz is too low for the band around {center[0]:.4g} Hz"

@@ -26,8 +26,10 @@ from propmdao.acoustics.kinematics.limits import require_air
 from propmdao.acoustics.kinematics.motion import Motion, poses, rotation
 from propmdao.acoustics.kinematics.reception import Observers, observer_clock, require_outside
 from propmdao.acoustics.signals import PressureHistory
+from propmdao.acoustics.sources.kernels import TONAL_SOURCES
 from propmdao.acoustics.sources.periodic import rotor_tones, symmetry
-from propmdao.acoustics.sources.rotors import Rotor
+from propmdao.acoustics.sources.rotors import Rotor, silence
+from propmdao.records.air import Air
 
 _TOLERANCE = 1e-3  # of the amplitudes: 0.009 dB
 _FLOOR = 1e-3  # below the loudest position, at the same distance, by 60 dB: need not be followed
@@ -43,33 +45,32 @@ def flyover_histories(
     rotors: list[Rotor],
     observers: Observers,
     times: ArrayLike,
-    density: float,
-    sound_speed: float,
+    air: Air,
     flight: Motion,
     max_frequency_hz: float,
 ) -> PressureHistory:
-    """What observers hear of rotors in uniform flight whose turns are all alike.
+    """Pressure that observers hear of rotors in uniform flight whose turns are all alike.
 
     Parameters
     ----------
     rotors : list of Rotor
-        Of one aircraft; their loads constant or repeating every turn.
+        Rotors of one aircraft, whose loads are constant or repeat every turn.
     observers : Observers
-        Fixed or in uniform motion.
+        Observers at rest or in uniform motion.
     times : (n_times,) array_like
         Uniform observer times [s].
-    density, sound_speed : float
-        Of the undisturbed air [kg/m^3], [m/s].
+    air : Air
+        The undisturbed air.
     flight : Motion
-        Of the aircraft; it neither turns nor accelerates.
+        Motion of the aircraft; it neither turns nor accelerates.
     max_frequency_hz : float
-        Tones up to this frequency, as the rotor emits them [Hz].
+        Highest frequency of the tones, as the rotor emits them [Hz].
 
     Returns
     -------
     PressureHistory
-        Of all rotors together, without the steady pressure field that they carry along (what
-        `rotor_histories` has besides the tones).
+        Pressure of all rotors together, without the steady pressure field that they carry along
+        (which `rotor_histories` has besides the tones).
 
     Raises
     ------
@@ -84,11 +85,11 @@ def flyover_histories(
     twice as many positions as leave an error of 0.01 dB. Cost: panels x harmonics^2 x positions
     for the amplitudes, harmonics x times for the record.
     """
-    require_air(density, sound_speed)
+    require_air(air)
     clock, step = observer_clock(times)
     start = np.asarray(observers.position, float).reshape(-1, 3)
-    thickness = np.zeros((len(start), clock.size))
-    loading = np.zeros_like(thickness)
+    sound_speed = float(air.sound_speed)
+    history = silence(observers, clock)
     for rotor in rotors:
         chain = (*flight, *rotor.mount)
         if not all(frame.uniform for frame in chain):
@@ -110,14 +111,12 @@ def flyover_histories(
             )
         for i, x in enumerate((start - hub) @ to_hub):
             track = _Track(x, passing, velocity @ to_hub / sound_speed)
-            amplitudes = functools.partial(
-                _amplitudes, alone, track, fundamental, n_harmonics, density, sound_speed
-            )
+            amplitudes = functools.partial(_amplitudes, alone, track, fundamental, n_harmonics, air)
             series = _along(amplitudes, track, clock)
-            heard = _record(series, track, clock, step, fundamental, sound_speed, max_frequency_hz)
-            thickness[i] += heard[0]
-            loading[i] += heard[1]
-    return PressureHistory(clock, thickness, loading)
+            record = _record(series, track, clock, step, fundamental, sound_speed, max_frequency_hz)
+            for name, pressure in zip(TONAL_SOURCES, record, strict=True):
+                history.parts[name][i] += pressure
+    return history
 
 
 @dataclasses.dataclass(frozen=True)
@@ -142,7 +141,10 @@ class _Track:
         return np.asarray(miss + ways[:, None] * along)
 
     def distance(self, ways: Floats) -> Floats:
-        """Of the hub at emission: the root of d = |X + M d|."""
+        """Distance of the hub at emission [m], as by `emission_distance`.
+
+        In numpy: JAX would compile it for every length of a record.
+        """
         miss, along = self._miss
         ahead = miss @ self.mach + ways * (along @ self.mach)
         beta2 = 1 - self.mach @ self.mach
@@ -151,11 +153,11 @@ class _Track:
 
 @dataclasses.dataclass(frozen=True)
 class _Series:
-    """Chebyshev series over asinh(way / scale) of P_n exp(-1j n Omega d / c) d, both sources."""
+    """Chebyshev series over asinh(way / scale) of P_n exp(-1j n Omega d / c) d, all sources."""
 
     scale: float
     ends: tuple[float, float]
-    coefficients: Complex  # (degree + 1, 2, n_harmonics)
+    coefficients: Complex  # (degree + 1, n_sources, n_harmonics)
 
     def __call__(self, ways: Floats) -> Complex:
         low, high = self.ends
@@ -172,26 +174,19 @@ def _amplitudes(
     track: _Track,
     fundamental: float,
     n_harmonics: int,
-    density: float,
-    sound_speed: float,
+    air: Air,
     ways: Floats,
 ) -> Complex:
-    """P_n exp(-1j n Omega d / c) d of thickness and loading, (n_ways, 2, n_harmonics)."""
+    """P_n exp(-1j n Omega d / c) d of all sources, (n_ways, n_sources, n_harmonics)."""
+    sound_speed = float(air.sound_speed)
     full = np.concatenate([ways, np.repeat(ways[-1:], -ways.size % _TOGETHER)])
-    parts = []
-    for some in full.reshape(-1, _TOGETHER):
-        heard = rotor_tones(
-            rotor,
-            track.mach * sound_speed,
-            density,
-            sound_speed,
-            track.positions(some),
-            n_harmonics,
-        )
-        parts.append(np.stack([np.asarray(heard.thickness), np.asarray(heard.loading)], axis=1))
+    pieces = []
+    for few in full.reshape(-1, _TOGETHER):
+        tones = rotor_tones(rotor, track.mach * sound_speed, air, track.positions(few), n_harmonics)
+        pieces.append(np.stack([np.asarray(tones.parts[name]) for name in TONAL_SOURCES], axis=1))
     distance = track.distance(ways)
     wave = np.outer(distance, fundamental / sound_speed * np.arange(1, n_harmonics + 1))
-    amplitude = np.concatenate(parts)[: ways.size]
+    amplitude = np.concatenate(pieces)[: ways.size]
     return np.asarray(amplitude * (distance[:, None] * np.exp(-1j * wave))[:, None])
 
 
@@ -203,21 +198,20 @@ def _along(amplitudes: functools.partial[Complex], track: _Track, times: Floats)
     scale = max(miss, 0.1 * nearest)  # an observer right ahead has no miss distance
     low, high = np.arcsinh(ends / scale)
 
-    def at(nodes: Floats) -> Complex:
-        return amplitudes(scale * np.sinh(0.5 * (high + low) + 0.5 * (high - low) * nodes))
+    def ways_of(nodes: Floats) -> Floats:
+        return np.asarray(scale * np.sinh(0.5 * (high + low) + 0.5 * (high - low) * nodes))
 
     degree = 8
-    values = at(np.cos(np.pi * np.arange(degree + 1) / degree))
+    values = amplitudes(ways_of(np.cos(np.pi * np.arange(degree + 1) / degree)))
     while True:
         coarse = _Series(scale, (low, high), _coefficients(values))
-        nodes = np.cos(np.pi * (np.arange(degree) + 0.5) / degree)
-        new = at(nodes)
-        ways = scale * np.sinh(0.5 * (high + low) + 0.5 * (high - low) * nodes)
-        size, wrong = (np.linalg.norm(q, axis=(1, 2)) for q in (new, new - coarse(ways)))
+        ways = ways_of(np.cos(np.pi * (np.arange(degree) + 0.5) / degree))
+        new = amplitudes(ways)
+        size, error = (np.linalg.norm(q, axis=(1, 2)) for q in (new, new - coarse(ways)))
         finer = np.empty((2 * degree + 1, *values.shape[1:]), complex)
         finer[::2], finer[1::2] = values, new
         values, degree = finer, 2 * degree
-        if np.all(wrong <= _TOLERANCE * np.maximum(size, _FLOOR * size.max())):
+        if np.all(error <= _TOLERANCE * np.maximum(size, _FLOOR * size.max())):
             return _Series(scale, (low, high), _coefficients(values))
         if degree >= _MOST_POSITIONS:
             raise ValueError(
@@ -243,7 +237,7 @@ def _record(
     sound_speed: float,
     max_frequency_hz: float,
 ) -> Floats:
-    """Thickness and loading pressure, (2, n_times)."""
+    """Pressure of all sources, (n_sources, n_times)."""
     ways = track.ways(times)
     distance = track.distance(ways)
     emission = times - distance / sound_speed
@@ -251,15 +245,15 @@ def _record(
     if max_frequency_hz * rate > 0.5 / step:
         raise ValueError(
             f"a record of {1 / step:g} samples per second holds no "
-            f"{max_frequency_hz * rate:.4g} Hz, what max_frequency_hz is heard as"
+            f"{max_frequency_hz * rate:.4g} Hz, as which max_frequency_hz is heard"
         )
-    heard = np.empty((2, times.size))
+    record = np.empty((series.coefficients.shape[1], times.size))
     for first in range(0, times.size, _CHUNK):
         part = slice(first, first + _CHUNK)
         amplitudes = series(ways[part])
         turn = np.exp(-1j * fundamental * emission[part])
-        total = np.zeros((turn.size, 2), complex)
+        total = np.zeros((turn.size, len(record)), complex)
         for amplitude in np.moveaxis(amplitudes, 2, 0)[::-1]:  # Horner's scheme
             total = (total + amplitude) * turn[:, None]
-        heard[:, part] = 2 * total.real.T / distance[part]
-    return heard
+        record[:, part] = 2 * total.real.T / distance[part]
+    return record

@@ -12,10 +12,12 @@ import numpy as np
 from jax import Array
 from jax.typing import ArrayLike
 
+from propmdao.acoustics.kinematics.emission import emission_distance
 from propmdao.acoustics.signals import Tones
 from propmdao.acoustics.sources.harmonic_sums import cos_sin, harmonic_sums
 from propmdao.records.loads import PointLoads
 from propmdao.records.panels import Panels
+from propmdao.records.states import RotorState
 from propmdao.runtime.compilation import compiled
 
 
@@ -24,10 +26,7 @@ def tones(
     panels: Panels,
     loads: PointLoads,
     n_blades: int,
-    rotation_speed: ArrayLike,
-    speed: ArrayLike,
-    density: ArrayLike,
-    sound_speed: ArrayLike,
+    state: RotorState,
     observers: ArrayLike,
     n_harmonics: int,
 ) -> Tones:
@@ -50,12 +49,9 @@ def tones(
         Forces of blade 1 on the fluid.
     n_blades : int
         Number of equally spaced blades B (static).
-    rotation_speed : float
-        Omega about +z [rad/s]. At zero nothing is periodic: all amplitudes are zero.
-    speed : float
-        Speed V of the rotor and the observers along +z [m/s].
-    density, sound_speed : float
-        Of the undisturbed air [kg/m^3], [m/s].
+    state : RotorState
+        Rotation speed Omega about +z, speed V of the rotor and the observers along +z, and the
+        undisturbed air. At zero rotation speed nothing is periodic: all amplitudes are zero.
     observers : (n_observers, 3) array
         Positions from the rotor centre, moving with it [m].
     n_harmonics : int
@@ -76,33 +72,48 @@ def tones(
     ----------
     F. Farassat, Derivation of Formulations 1 and 1A of Farassat, NASA TM-2007-214853.
     """
-    motion = _Motion(*(jnp.asarray(q, float) for q in (rotation_speed, speed, sound_speed)))
-    thickness = _thickness(panels, jnp.asarray(density, float), motion)
-    loading = _loading(loads, motion)
+    air = state.air
+    operation = _Operation(
+        *(
+            jnp.asarray(q, float)
+            for q in (state.rotation_speed, state.speed, air.density, air.sound_speed)
+        )
+    )
+    blade = _Blade(panels, loads)
+    sources = {name: source(blade, operation) for name, source in SOURCES.items()}
 
     @jax.checkpoint  # the reverse derivative recomputes one observer at a time: megabytes, not GiB
-    def hear(observer: Array) -> tuple[Array, Array]:
-        return (
-            _fourier_integral(thickness, motion, n_blades, n_harmonics, observer),
-            _fourier_integral(loading, motion, n_blades, n_harmonics, observer),
-        )
+    def amplitudes_at(observer: Array) -> dict[str, Array]:
+        return {
+            name: _fourier_integral(source, operation, n_blades, n_harmonics, observer)
+            for name, source in sources.items()
+        }
 
-    amplitudes = jax.lax.map(hear, jnp.asarray(observers, float))
-    turning = motion.omega != 0
-    frequency_hz = n_blades * motion.omega / (2 * np.pi) * np.arange(1, n_harmonics + 1)
-    return Tones(frequency_hz, *(jnp.where(turning, p, 0.0) for p in amplitudes))
+    amplitudes = jax.lax.map(amplitudes_at, jnp.asarray(observers, float))
+    turning = operation.omega != 0
+    frequency_hz = n_blades * operation.omega / (2 * np.pi) * np.arange(1, n_harmonics + 1)
+    return Tones(frequency_hz, amplitudes).each(lambda p: jnp.where(turning, p, 0.0))
 
 
-class _Motion(NamedTuple):
+class _Blade(NamedTuple):
+    panels: Panels
+    loads: PointLoads
+
+
+class _Operation(NamedTuple):
     omega: Array
     v: Array
+    rho: Array
     c: Array
 
 
 class _Radiation(NamedTuple):
-    """One source and the direction r in which its sound leaves, in the turning frame."""
+    """One source and the direction in which its sound leaves, in the turning frame.
 
-    d: Array  # from the source at emission to the observer at reception
+    d is Farassat's r, from the source at emission to the observer at reception, r his r-hat.
+    """
+
+    d: Array
     r: tuple[Array, Array, Array]
     m_r: Array
     near: Array  # d Mdot_r + c (M_r - M^2)
@@ -115,7 +126,7 @@ _Source = Callable[[Array, Array, Array], tuple[Array, Array]]
 
 
 def _fourier_integral(
-    source: _Source, motion: _Motion, n_blades: int, n_harmonics: int, observer: Array
+    source: _Source, operation: _Operation, n_blades: int, n_harmonics: int, observer: Array
 ) -> Array:
     """Average ``p dt/dtau exp(1j n Omega t)`` of blade 1 over one turn, times B."""
     # The integrand holds harmonics up to n (1 + M), and some more in the near field.
@@ -126,33 +137,33 @@ def _fourier_integral(
     y = observer[1] * np.cos(azimuth) - observer[0] * np.sin(azimuth)
 
     @jax.checkpoint
-    def emit(position: tuple[Array, Array]) -> tuple[Array, Array, Array]:
+    def strength_and_phase(position: tuple[Array, Array]) -> tuple[Array, Array, Array]:
         strength, d = source(*position, observer[2])
-        return strength, *cos_sin(n_blades * motion.omega / motion.c * d)
+        return strength, *cos_sin(n_blades * operation.omega / operation.c * d)
 
-    strength, cosine, sine = jax.lax.map(emit, (x, y))
+    strength, cosine, sine = jax.lax.map(strength_and_phase, (x, y))
     sums = harmonic_sums(strength, cosine, sine, n_harmonics)
     turned = np.exp(1j * n_blades * np.outer(azimuth, np.arange(1, n_harmonics + 1)))
     return n_blades / (4 * np.pi * n_azimuths) * jnp.sum(sums * turned, axis=0)
 
 
-def _thickness(panels: Panels, density: Array, motion: _Motion) -> _Source:
+def _thickness(blade: _Blade, operation: _Operation) -> _Source:
     """Thickness noise, rho v_n (d Mdot_r + c (M_r - M^2)) / (d^2 (1 - M_r)^3)."""
     # The other term, rho (vdot_n + v_ndot) / (d (1 - M_r)^2), is the change of v_n dS on a panel:
     # zero, since the surface is rigid.
-    x, y, z = panels.center.T
-    sx, sy, sz = panels.vector_area.T
-    v_n = motion.omega * (x * sy - y * sx) + motion.v * sz
-    radiation = _radiation(x, y, z, motion)
+    x, y, z = blade.panels.center.T
+    sx, sy, sz = blade.panels.vector_area.T
+    v_n = operation.omega * (x * sy - y * sx) + operation.v * sz
+    radiation = _radiation(x, y, z, operation)
 
-    def emit(*observer: Array) -> tuple[Array, Array]:
+    def pressure(*observer: Array) -> tuple[Array, Array]:
         d, _, _, near, spread = radiation(*observer)
-        return density * v_n * near * spread, d
+        return operation.rho * v_n * near * spread, d
 
-    return emit
+    return pressure
 
 
-def _loading(loads: PointLoads, motion: _Motion) -> _Source:
+def _loading(blade: _Blade, operation: _Operation) -> _Source:
     """Loading noise, the sum of three terms over c.
 
     They are::
@@ -161,33 +172,39 @@ def _loading(loads: PointLoads, motion: _Motion) -> _Source:
         c (l_r - l_M) / (d^2 (1 - M_r)^2)
         l_r (d Mdot_r + c (M_r - M^2)) / (d^2 (1 - M_r)^3)
     """
-    omega, v, c = motion
-    x, y, z = loads.position.T
-    lx, ly, lz = loads.force.T
+    omega, v, _, c = operation
+    x, y, z = blade.loads.position.T
+    lx, ly, lz = blade.loads.force.T
     l_m = (omega * (ly * x - lx * y) + v * lz) / c
-    radiation = _radiation(x, y, z, motion)
+    radiation = _radiation(x, y, z, operation)
 
-    def emit(*observer: Array) -> tuple[Array, Array]:
+    def pressure(*observer: Array) -> tuple[Array, Array]:
         d, r, m_r, near, spread = radiation(*observer)
         l_r = lx * r[0] + ly * r[1] + lz * r[2]
         ldot_r = omega * (lx * r[1] - ly * r[0])  # the force turns with the blade
-        return ((ldot_r * d / c + l_r - l_m) * (1 - m_r) + l_r * near / c) * spread, d
+        # each term times d^2 (1 - M_r)^3, which `spread` takes out again
+        change = ldot_r * d * (1 - m_r)
+        near_field = c * (l_r - l_m) * (1 - m_r)
+        motion = l_r * near
+        return (change + near_field + motion) / c * spread, d
 
-    return emit
+    return pressure
+
+
+#: Sources of tones by their names in `Tones`, each a function of blade and operation.
+SOURCES = {"thickness": _thickness, "loading": _loading}
 
 
 def _radiation(
-    x: Array, y: Array, z: Array, motion: _Motion
+    x: Array, y: Array, z: Array, operation: _Operation
 ) -> Callable[[Array, Array, Array], _Radiation]:
-    omega, v, c = motion
+    omega, v, _, c = operation
     m2 = (omega / c) ** 2 * (x**2 + y**2) + (v / c) ** 2
     m_z = v / c
-    beta2 = 1 - m_z**2
 
     def toward(x_observer: Array, y_observer: Array, z_observer: Array) -> _Radiation:
         dx, dy, dz = x_observer - x, y_observer - y, z_observer - z
-        # While the sound travels the observer flies on: d is the root of d = |D + (V d / c) e_z|.
-        d = (m_z * dz + jnp.sqrt((m_z * dz) ** 2 + beta2 * (dx**2 + dy**2 + dz**2))) / beta2
+        d = emission_distance(m_z * dz, dx**2 + dy**2 + dz**2, m_z**2)
         inverse = 1 / d
         r = dx * inverse, dy * inverse, dz * inverse + m_z
         m_r = omega / c * (x * r[1] - y * r[0]) + m_z * r[2]

@@ -13,33 +13,25 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 from jax import Array
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from propmdao.acoustics.kinematics.limits import require_air, require_subsonic_tip
 from propmdao.acoustics.kinematics.motion import Poses, poses, rotation, translation
 from propmdao.acoustics.signals import Tones
-from propmdao.acoustics.sources.advanced_time import emit
 from propmdao.acoustics.sources.harmonic_sums import cos_sin, harmonic_sums
-from propmdao.acoustics.sources.moving_sources import (
-    AperiodicLoads,
-    PeriodicLoads,
-    Sources,
-    UnsteadySources,
-    blade_loads,
-    frame_sources,
-)
+from propmdao.acoustics.sources.kernels import TONAL_SOURCES, Kernel, emission
+from propmdao.acoustics.sources.moving_sources import AperiodicLoads, Sources, frame_sources
 from propmdao.acoustics.sources.rotors import Rotor
-from propmdao.records.loads import PointLoads
-from propmdao.records.panels import Panels
+from propmdao.records.air import Air
 from propmdao.records.pytrees import Scalar
+from propmdao.records.states import RotorState
 from propmdao.runtime.compilation import compiled
 
 
 def rotor_tones(
     rotor: Rotor,
     velocity: ArrayLike,
-    density: float,
-    sound_speed: float,
+    air: Air,
     observers: ArrayLike,
     n_harmonics: int,
 ) -> Tones:
@@ -48,11 +40,11 @@ def rotor_tones(
     Parameters
     ----------
     rotor : Rotor
-        Its loads constant or repeating every turn.
+        Rotor whose loads are constant or repeat every turn.
     velocity : (3,) array_like
-        Of flight, in the axes of the aircraft [m/s].
-    density, sound_speed : float
-        Of the undisturbed air [kg/m^3], [m/s].
+        Velocity of the flight, in the axes of the aircraft [m/s].
+    air : Air
+        The undisturbed air.
     observers : (n_observers, 3) array_like
         Positions in the aircraft [m].
     n_harmonics : int
@@ -62,7 +54,7 @@ def rotor_tones(
     Returns
     -------
     Tones
-        Amplitudes of thickness and loading noise, zero at zero rotation speed.
+        Amplitudes of every source, zero at zero rotation speed.
 
     Raises
     ------
@@ -74,7 +66,7 @@ def rotor_tones(
     Blade b stands at the azimuth psi_b and is heard as much earlier as it is ahead, so that the sum
     over blades is that of one blade times ``sum_b exp(-1j n psi_b)``.
     """
-    require_air(density, sound_speed)
+    require_air(air)
     if isinstance(rotor.loads, AperiodicLoads):
         raise ValueError(f"loads of {rotor.name} must repeat every turn to have tones")
     pose = poses(rotor.mount, np.zeros(1))
@@ -84,43 +76,34 @@ def rotor_tones(
     omega, radius = rotor.rotation_speed, float(np.linalg.norm(rotor.points[:, :2], axis=1).max())
     # The fastest an element gets: the advancing side of the disk.
     in_plane = abs(omega) + float(np.linalg.norm(v[:2])) / radius
-    require_subsonic_tip(radius, in_plane, float(v[2]), sound_speed)
+    require_subsonic_tip(radius, RotorState(in_plane, float(v[2]), air))
     step = symmetry(rotor.azimuths)
     orders = step * np.arange(1, n_harmonics + 1)
     silence = jnp.zeros((len(x), n_harmonics), complex)
+    parts = dict.fromkeys(TONAL_SOURCES, silence)
     if omega == 0:
-        return Tones(jnp.zeros(n_harmonics), silence, silence)
+        return Tones(jnp.zeros(n_harmonics), parts)
     blades = np.exp(-1j * np.outer(orders, np.atleast_1d(rotor.azimuths))).sum(axis=1)
-
-    def heard(sources: Panels | PointLoads | UnsteadySources, tau: NDArray[np.float64]) -> Array:
-        pose = poses((translation(velocity=v), rotation((0, 0, 1), rate=omega)), tau)
-        of_one = _fourier_integral(
-            isinstance(sources, Panels),
-            frame_sources(sources),
-            pose,
+    flight = (translation(velocity=v), rotation((0, 0, 1), rate=omega))
+    for name, n_azimuths in rotor.azimuths_held.items():
+        # The integrand holds harmonics up to n (1 + M), some more in the near field, and those of
+        # the loads.
+        n = 2 * step * n_harmonics + 16 + n_azimuths
+        tau = 2 * np.pi / omega * np.arange(n) / n
+        blade = _fourier_integral(
+            TONAL_SOURCES[name].kernel,
+            frame_sources(rotor.source(name, 0, 0.0, tau)),
+            poses(flight, tau),
             jnp.asarray(tau),
             jnp.asarray(x),
             jnp.asarray(v),
             omega,
-            sound_speed,
+            air.sound_speed,
             step,
             n_harmonics,
         )
-        return of_one * blades
-
-    # The integrand holds harmonics up to n (1 + M), some more in the near field, and those of
-    # the loads.
-    n_azimuths = 2 * step * n_harmonics + 16
-    turn = 2 * np.pi / omega
-    thickness = loading = silence
-    if rotor.panels is not None:
-        thickness = density * heard(rotor.panels, turn * np.arange(n_azimuths) / n_azimuths)
-    if rotor.loads is not None:
-        if isinstance(rotor.loads, PeriodicLoads):
-            n_azimuths += len(rotor.loads.force)
-        tau = turn * np.arange(n_azimuths) / n_azimuths
-        loading = heard(blade_loads(rotor.loads, 0, 0.0, omega, tau), tau)
-    return Tones(jnp.asarray(orders * omega / (2 * np.pi)), thickness, loading)
+        parts[name] = TONAL_SOURCES[name].scale(air) * (blade * blades)
+    return Tones(jnp.asarray(orders * omega / (2 * np.pi)), parts)
 
 
 def symmetry(azimuths: ArrayLike) -> int:
@@ -129,7 +112,7 @@ def symmetry(azimuths: ArrayLike) -> int:
     Parameters
     ----------
     azimuths : (n_blades,) array_like
-        Of the blades [rad].
+        Azimuths of the blades [rad].
 
     Returns
     -------
@@ -148,9 +131,9 @@ def symmetry(azimuths: ArrayLike) -> int:
     return max(k for k in range(1, n + 1) if n % k == 0 and repeats(k))
 
 
-@partial(compiled, static_argnames=("thickness", "step", "n_harmonics"))
+@partial(compiled, static_argnames=("kernel", "step", "n_harmonics"))
 def _fourier_integral(
-    thickness: bool,
+    kernel: Kernel,
     sources: Sources,
     pose: Poses,
     tau: Array,
@@ -165,13 +148,12 @@ def _fourier_integral(
     azimuth = 2 * np.pi * np.arange(tau.size) / tau.size
     turned = np.exp(1j * step * np.outer(azimuth, np.arange(1, n_harmonics + 1)))
 
-    def hear(observer: Array) -> Array:
-        def at(j: Array) -> tuple[Array, Array, Array]:
+    def amplitudes_at(observer: Array) -> Array:
+        def strength_and_phase(j: Array) -> tuple[Array, Array, Array]:
             def now(q: Array) -> Array:  # what does not change has one time only
                 return jax.lax.dynamic_slice_in_dim(q, j % q.shape[2], 1, axis=2)
 
-            distance, pressure, rate = emit(
-                thickness,
+            emitted = emission(
                 jax.tree.map(now, sources),
                 jax.tree.map(lambda q: q[j][None], pose),
                 tau[j][None],
@@ -179,12 +161,12 @@ def _fourier_integral(
                 velocity,
                 sound_speed,
             )
-            phase = cos_sin(step * omega / sound_speed * distance[:, 0])
-            return (pressure * rate)[:, 0], *phase
+            phase = cos_sin(step * omega / sound_speed * emitted.distance[:, 0])
+            return (kernel(emitted) * emitted.rate)[:, 0], *phase
 
         # a loop, so that XLA does not fuse all this into the sums: see `harmonic_sums`
-        strength, cosine, sine = jax.lax.map(at, jnp.arange(tau.size))
+        strength, cosine, sine = jax.lax.map(strength_and_phase, jnp.arange(tau.size))
         sums = harmonic_sums(strength, cosine, sine, n_harmonics)
         return jnp.sum(sums * turned, axis=0) / (4 * np.pi * tau.size)
 
-    return jax.lax.map(hear, observers)
+    return jax.lax.map(amplitudes_at, observers)

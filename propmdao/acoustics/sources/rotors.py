@@ -22,13 +22,17 @@ from propmdao.acoustics.kinematics.reception import (
     source_times,
 )
 from propmdao.acoustics.signals import PressureHistory
-from propmdao.acoustics.sources.advanced_time import loading_history, thickness_history
+from propmdao.acoustics.sources.advanced_time import source_history
+from propmdao.acoustics.sources.kernels import TONAL_SOURCES
 from propmdao.acoustics.sources.moving_sources import (
     AperiodicLoads,
     BladeLoads,
     PeriodicLoads,
+    UnsteadySources,
     blade_loads,
 )
+from propmdao.records.air import Air
+from propmdao.records.loads import PointLoads
 from propmdao.records.panels import Panels
 
 # Unsteady forces times source times kept at once: 0.2 GiB with their derivatives.
@@ -52,7 +56,7 @@ class Rotor:
     mount : Motion
         Frames at rest in the aircraft, to the hub and into the direction of the shaft.
     name : str
-        For messages.
+        Name in messages.
     """
 
     azimuths: ArrayLike
@@ -64,12 +68,56 @@ class Rotor:
 
     @property
     def points(self) -> NDArray[np.float64]:
-        """Where the sources of a blade are, (n, 3) [m]."""
-        given = [] if self.panels is None else [self.panels.center]
-        given += [] if self.loads is None else [self.loads.position]
-        if not given:
+        """Positions of the sources of a blade, (n, 3) [m]."""
+        places = [] if self.panels is None else [self.panels.center]
+        places += [] if self.loads is None else [self.loads.position]
+        if not places:
             raise ValueError(f"{self.name} has neither panels nor loads: nothing to be heard")
-        return np.concatenate([np.asarray(q, float) for q in given])
+        return np.concatenate([np.asarray(q, float) for q in places])
+
+    @property
+    def azimuths_held(self) -> dict[str, int]:
+        """Kinds of sources it has, by their names in `TONAL_SOURCES`.
+
+        With each, the number of azimuths at which it is tabulated over the turn: 0 for what is
+        constant, or given over time.
+        """
+        held = {} if self.panels is None else {"thickness": 0}
+        if self.loads is not None:
+            periodic = isinstance(self.loads, PeriodicLoads)
+            held["loading"] = len(self.loads.force) if periodic else 0
+        return held
+
+    def source(
+        self, name: str, blade: int, azimuth: float, times: ArrayLike
+    ) -> Panels | PointLoads | UnsteadySources:
+        """Sources of one kind of one blade at given source times.
+
+        Parameters
+        ----------
+        name : str
+            One of `azimuths_held`.
+        blade : int
+            Number of the blade, counted from 0.
+        azimuth : float
+            Azimuth of the blade at time 0 [rad].
+        times : (n_times,) array_like
+            Source times [s].
+
+        Returns
+        -------
+        Panels, PointLoads or UnsteadySources
+            Sources in the frame of the blade.
+
+        Raises
+        ------
+        ValueError
+            If a table over time does not cover the source times.
+        """
+        if name == "thickness" and self.panels is not None:
+            return self.panels
+        assert name == "loading" and self.loads is not None
+        return blade_loads(self.loads, blade, azimuth, self.rotation_speed, times)
 
 
 def equally_spaced(n_blades: int, first: float = 0.0) -> NDArray[np.float64]:
@@ -85,7 +133,7 @@ def equally_spaced(n_blades: int, first: float = 0.0) -> NDArray[np.float64]:
     Returns
     -------
     (n_blades,) array
-        For `Rotor` [rad].
+        Azimuths [rad].
     """
     return first + 2 * np.pi * np.arange(n_blades) / n_blades
 
@@ -96,12 +144,12 @@ def mirrored(rotor: Rotor) -> Rotor:
     Parameters
     ----------
     rotor : Rotor
-        Any.
+        Any rotor.
 
     Returns
     -------
     Rotor
-        On the same mount.
+        Its mirror image, on the same mount.
     """
     flip = jnp.array([1.0, -1.0, 1.0])
     panels, loads = rotor.panels, rotor.loads
@@ -125,32 +173,31 @@ def rotor_histories(
     rotors: list[Rotor],
     observers: Observers,
     times: ArrayLike,
-    density: float,
-    sound_speed: float,
+    air: Air,
     flight: Motion = (),
     step: float | None = None,
 ) -> PressureHistory:
-    """What observers hear of rotors in any motion, by advanced-time marching.
+    """Pressure that observers hear of rotors in any motion, by advanced-time marching.
 
     Parameters
     ----------
     rotors : list of Rotor
-        Of one aircraft.
+        Rotors of one aircraft.
     observers : Observers
-        Fixed or in uniform motion.
+        Observers at rest or in uniform motion.
     times : (n_times,) array_like
         Uniform observer times [s].
-    density, sound_speed : float
-        Of the undisturbed air [kg/m^3], [m/s].
+    air : Air
+        The undisturbed air.
     flight : Motion
-        Of the aircraft; at rest by default.
+        Motion of the aircraft; at rest by default.
     step : float, optional
-        At most that between source times [s]; that of the observer times by default.
+        Largest step between source times [s]; that of the observer times by default.
 
     Returns
     -------
     PressureHistory
-        Of all rotors together, the steady pressure field that they carry along included.
+        Pressure of all rotors together, the steady pressure field that they carry along included.
 
     Raises
     ------
@@ -164,22 +211,37 @@ def rotor_histories(
     proportional to panels x observers x times. `flyover_histories` is the faster way for loads
     that repeat every turn in uniform flight.
     """
-    require_air(density, sound_speed)
+    require_air(air)
     clock, _ = observer_clock(times)
-    thickness = np.zeros((len(observers.position), clock.size))
-    loading = np.zeros_like(thickness)
     for rotor in rotors:
         turning = rotation((0, 0, 1), rate=rotor.rotation_speed)
         chain = (*flight, *rotor.mount, turning)
         require_outside(chain, rotor.points, observers, clock, rotor.name)
+    history = silence(observers, clock)
     for part in segments(clock.size, max(map(_n_unsteady, rotors), default=0)):
-        heard = [
-            _segment(rotor, observers, clock[part], density, sound_speed, flight, step)
-            for rotor in rotors
-        ]
-        thickness[:, part] = sum(pair[0] for pair in heard)
-        loading[:, part] = sum(pair[1] for pair in heard)
-    return PressureHistory(clock, thickness, loading)
+        pieces = [_segment(rotor, observers, clock[part], air, flight, step) for rotor in rotors]
+        for name, pressure in history.parts.items():
+            pressure[:, part] = sum(piece.parts[name] for piece in pieces)
+    return history
+
+
+def silence(observers: Observers, times: NDArray[np.float64]) -> PressureHistory:
+    """Record of all kinds of sources in which nothing is heard yet.
+
+    Parameters
+    ----------
+    observers : Observers
+        Observers.
+    times : (n_times,) array
+        Observer times [s].
+
+    Returns
+    -------
+    PressureHistory
+        Zeros, to add to.
+    """
+    shape = len(observers.position), times.size
+    return PressureHistory(times, {name: np.zeros(shape) for name in TONAL_SOURCES})
 
 
 def segments(n_times: int, n_unsteady: int) -> list[slice]:
@@ -206,29 +268,25 @@ def _segment(
     rotor: Rotor,
     observers: Observers,
     times: NDArray[np.float64],
-    density: float,
-    sound_speed: float,
+    air: Air,
     flight: Motion,
     step: float | None,
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    thickness = np.zeros((len(observers.position), times.size))
-    loading = np.zeros_like(thickness)
+) -> PressureHistory:
+    history = silence(observers, times)
     azimuths = np.atleast_1d(np.asarray(rotor.azimuths, float))
     motions = blade_motions(azimuths, rotor.rotation_speed, (*flight, *rotor.mount))
     # A coarse multiple: the Doppler shift changes the number of source times along the record.
     multiple = max(128, times.size // 4)
     for blade, (azimuth, motion) in enumerate(zip(azimuths, motions, strict=True)):
         tau = source_times(
-            motion, rotor.points, observers, times, sound_speed, step, multiple=multiple
+            motion, rotor.points, observers, times, float(air.sound_speed), step, multiple
         )
-        if rotor.panels is not None:
-            thickness += thickness_history(
-                rotor.panels, motion, tau, observers, times, density, sound_speed
+        for name in rotor.azimuths_held:
+            sources = rotor.source(name, blade, azimuth, tau)
+            history.parts[name][:] += source_history(
+                name, sources, motion, tau, observers, times, air
             )
-        if rotor.loads is not None:
-            forces = blade_loads(rotor.loads, blade, azimuth, rotor.rotation_speed, tau)
-            loading += loading_history(forces, motion, tau, observers, times, sound_speed)
-    return thickness, loading
+    return history
 
 
 def _n_unsteady(rotor: Rotor) -> int:

@@ -17,6 +17,7 @@ from propmdao.formats.wopwop.blade_files import blade_geometry, blade_loading
 from propmdao.formats.wopwop.geometry_file import write_geometry
 from propmdao.formats.wopwop.loading_file import write_loading
 from propmdao.formats.wopwop.namelists import write_namelists
+from propmdao.records.air import Air
 
 Groups = list[tuple[str, Mapping[str, Any]]]
 
@@ -27,8 +28,7 @@ def write_case(
     surfaces: Sequence[ArrayLike | None],
     observers: Observers,
     times: ArrayLike,
-    density: float,
-    sound_speed: float,
+    air: Air,
     flight: Motion = (),
 ) -> None:
     """Write a case that PSU-WOPWOP, and `run_case`, can run.
@@ -36,19 +36,19 @@ def write_case(
     Parameters
     ----------
     folder : str or Path
-        Where to; made if it is not there. Files of the same names are replaced.
+        Folder to write to; made if it is not there. Files of the same names are replaced.
     rotors : sequence of Rotor
-        Of one aircraft; their panels are not used.
+        Rotors of one aircraft; their panels are not used.
     surfaces : sequence of (n_contour, n_span, 3) array_like or None
-        Of the blade of each rotor: points of `surface_nodes` [m]; without them no thickness noise.
+        Points of `surface_nodes` of the blade of each rotor [m]; without them no thickness noise.
     observers : Observers
-        Fixed or in uniform motion.
+        Observers at rest or in uniform motion.
     times : (n_times,) array_like
         Uniform observer times [s].
-    density, sound_speed : float
-        Of the undisturbed air [kg/m^3], [m/s].
+    air : Air
+        The undisturbed air.
     flight : Motion
-        Of the aircraft; at rest by default.
+        Motion of the aircraft; at rest by default.
 
     Raises
     ------
@@ -72,7 +72,7 @@ def write_case(
             containers += _rotor(folder, number, rotor, nodes, float(clock[1] - clock[0]))
         groups: Groups = [
             ("EnvironmentIn", _environment(len(observers.position))),
-            ("EnvironmentConstants", {"rho": float(density), "c": float(sound_speed)}),
+            ("EnvironmentConstants", {"rho": float(air.density), "c": float(air.sound_speed)}),
         ]
         groups += _observers(observers, clock) + containers
         write_namelists(folder / "case.nam", groups)

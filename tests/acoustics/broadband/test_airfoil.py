@@ -11,15 +11,17 @@ import pytest
 from jax.test_util import check_grads
 
 from propmdao.acoustics.broadband.boundary_layer import boundary_layer
-from propmdao.acoustics.broadband.directivity import radiation
+from propmdao.acoustics.broadband.directivity import Radiation, radiation
 from propmdao.acoustics.broadband.self_noise import (
     third_octave_centers,
     tip_noise,
     trailing_edge_noise,
 )
 from propmdao.acoustics.levels.decibels import level_db
+from propmdao.records.air import Air
 
 C, NU = 340.0, 1.5e-5
+AIR = Air(density=1.2, sound_speed=C, dynamic_viscosity=1.2 * NU)
 BANDS = third_octave_centers(200, 20e3)
 
 
@@ -27,7 +29,7 @@ def noise(section, trip="none", sight=(0.3, 0.2, 1.0), layer=None, bands=BANDS):
     if layer is None:
         layer = boundary_layer(section.chord, section.speed, section.angle_of_attack, NU, trip)
     toward = radiation(*sight, section.speed / C)
-    return trailing_edge_noise(bands, section, layer, toward, C, NU, trip)
+    return trailing_edge_noise(bands, section, layer, toward, AIR, trip)
 
 
 def test_directivity_as_printed():
@@ -128,14 +130,14 @@ def test_derivatives_are_those_of_the_values(section, degrees):
     s = section(degrees=degrees)
 
     def total(chord, speed, angle, thickness):
-        at = dataclasses.replace(
+        changed = dataclasses.replace(
             s, chord=chord, speed=speed, angle_of_attack=angle, trailing_edge_thickness=thickness
         )
-        return jnp.log10(sum(noise(at)))
+        return jnp.log10(sum(noise(changed)))
 
-    at = (s.chord, s.speed, s.angle_of_attack, 1e3 * s.trailing_edge_thickness)
+    values = (s.chord, s.speed, s.angle_of_attack, 1e3 * s.trailing_edge_thickness)
     check_grads(
-        lambda c, u, a, h: total(c, u, a, h / 1e3), at, order=1, eps=1e-7, rtol=2e-3, atol=2e-3
+        lambda c, u, a, h: total(c, u, a, h / 1e3), values, order=1, eps=1e-7, rtol=2e-3, atol=2e-3
     )
 
 
@@ -145,9 +147,9 @@ def test_derivatives_are_those_of_the_values(section, degrees):
 def test_derivatives_are_finite_where_nothing_is_left(section, changes):
     s = section(**changes)
 
-    def total(at):
-        vortex = tip_noise(BANDS, at.chord, at.speed, at.angle_of_attack, 1.0, C)
-        return jnp.sum(level_db(sum(noise(at)) + vortex))
+    def total(changed):
+        vortex = tip_noise(BANDS, changed, Radiation(high=1.0, low=1.0), AIR)
+        return jnp.sum(level_db(sum(noise(changed)) + vortex))
 
     value, slopes = jax.value_and_grad(total)(s)
     assert np.isfinite(value)
@@ -155,7 +157,7 @@ def test_derivatives_are_finite_where_nothing_is_left(section, changes):
 
 
 @pytest.mark.parametrize("tip", ["rounded", "square"])
-def test_tip_vortex_as_printed(tip):
+def test_tip_vortex_as_printed(section, tip):
     # Equations 61 to 67 at 5 deg.
     u, c = 60.0, 0.03
     length = (0.008 * 5 if tip == "rounded" else 0.0378 + 0.0095 * 5) * c
@@ -163,5 +165,6 @@ def test_tip_vortex_as_printed(tip):
     m_max = m * (1 + 0.036 * 5)
     st = BANDS * length / (m_max * C)
     level = 10 * np.log10(m**2 * m_max**3 * length**2) - 30.5 * (np.log10(st) + 0.3) ** 2 + 126
-    got = level_db(tip_noise(BANDS, c, u, np.radians(5.0), 1.0, C, tip))
+    end = section(chord=c, speed=u, degrees=5.0)
+    got = level_db(tip_noise(BANDS, end, Radiation(high=1.0, low=1.0), AIR, tip))
     np.testing.assert_allclose(got, level, atol=1e-6)

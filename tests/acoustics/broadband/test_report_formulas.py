@@ -114,14 +114,14 @@ def test_shapes_a_and_b(reynolds):
     rest = (reynolds - 8.57e5) ** 2
     a0 = float(piecewise(reynolds, (9.52e4, 0.57), (8.57e5, -9.57e-13 * rest + 1.13), 1.13))
     b0 = float(piecewise(reynolds, (9.52e4, 0.30), (8.57e5, -4.48e-13 * rest + 0.56), 0.56))
-    for low, high, at, product, factor in (
-        (a_min, a_max, a0, turbulent_spectra.shape_a, turbulent_spectra.interpolation_a),
-        (b_min, b_max, b0, turbulent_spectra.shape_b, turbulent_spectra.interpolation_b),
+    for low, high, x, product in (
+        (a_min, a_max, a0, turbulent_spectra.SHAPE_A),
+        (b_min, b_max, b0, turbulent_spectra.SHAPE_B),
     ):
-        printed_factor = (-20 - low(at)) / (high(at) - low(at))
-        got_factor = factor(jnp.asarray(reynolds))
+        printed_factor = (-20 - low(x)) / (high(x) - low(x))
+        got_factor = product.interpolation(jnp.asarray(reynolds))
         assert float(got_factor) == pytest.approx(printed_factor, abs=0.03)
-        got = np.asarray(product(jnp.asarray(X), jnp.asarray(printed_factor)))
+        got = np.asarray(product.level(jnp.asarray(X), jnp.asarray(printed_factor)))
         assert np.abs(got - shape(X, low, high, printed_factor)).max() < 0.01
 
 

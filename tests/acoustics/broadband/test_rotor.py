@@ -15,14 +15,18 @@ from propmdao.acoustics.broadband.rotor import rotor_self_noise
 from propmdao.acoustics.broadband.self_noise import third_octave_centers, trailing_edge_noise
 from propmdao.acoustics.kinematics.observers import arc
 from propmdao.acoustics.levels.decibels import level_db
+from propmdao.records.air import Air
+from propmdao.records.states import RotorState
 
 C, NU = 340.0, 1.5e-5
+AIR = Air(density=1.0, sound_speed=C, dynamic_viscosity=NU)
 BANDS = third_octave_centers(315, 20e3)
 OBSERVERS = arc(1.5, [-45.0, 10.0])
 
 
-def hear(strips, n_blades=2, omega=440.0, speed=0.0, observers=OBSERVERS, bands=BANDS, **options):
-    return rotor_self_noise(strips, n_blades, omega, speed, C, NU, observers, bands, **options)
+def hear(strips, n_blades=2, omega=440.0, speed=0.0, observers=OBSERVERS, **options):
+    state = RotorState(omega, speed, AIR)
+    return rotor_self_noise(strips, n_blades, state, observers, BANDS, **options)
 
 
 def by_hand(strips, omega, speed, observer, n_azimuths):
@@ -43,10 +47,10 @@ def by_hand(strips, omega, speed, observer, n_azimuths):
             moving = np.cross([0, 0, omega], y) + flight
             stretch = (1 - toward @ moving / C) / (1 - toward @ flight / C)
             e_c, e_s = turn @ strips.chord_direction[i], turn @ strips.span_direction[i]
-            one = jax.tree.map(lambda q, i=i: q[i], s)
-            layer = boundary_layer(one.chord, one.speed, one.angle_of_attack, NU)
-            sight = radiation(r @ e_c, r @ e_s, r @ np.cross(e_c, e_s), one.speed / C)
-            edge = trailing_edge_noise(BANDS * stretch, one, layer, sight, C, NU)
+            strip = jax.tree.map(lambda q, i=i: q[i], s)
+            layer = boundary_layer(strip.chord, strip.speed, strip.angle_of_attack, NU)
+            sight = radiation(r @ e_c, r @ e_s, r @ np.cross(e_c, e_s), strip.speed / C)
+            edge = trailing_edge_noise(BANDS * stretch, strip, layer, sight, AIR)
             total += np.asarray(sum(edge)) * stretch / n_azimuths
     return total
 
@@ -81,7 +85,9 @@ def test_flow_may_change_over_the_turn(strips):
 def test_own_boundary_layer_is_the_default(strips):
     s = strips.section
     layer = boundary_layer(s.chord, s.speed, s.angle_of_attack, NU)
-    np.testing.assert_allclose(hear(strips).total, hear(strips, layer=layer).total, rtol=1e-12)
+    np.testing.assert_allclose(
+        hear(strips).total, hear(dataclasses.replace(strips, layer=layer)).total, rtol=1e-12
+    )
 
 
 def test_symmetric_rotor_is_heard_alike_all_around(strips):

@@ -11,8 +11,10 @@ from propmdao.acoustics.broadband.directivity import radiation
 from propmdao.acoustics.broadband.section import Section
 from propmdao.acoustics.broadband.self_noise import trailing_edge_noise
 from propmdao.acoustics.levels.decibels import level_db
+from propmdao.records.air import Air
 
-SOUND_SPEED, VISCOSITY = 340.46, 1.4529e-5
+# only the kinematic viscosity counts
+AIR = Air(density=1.0, sound_speed=340.46, dynamic_viscosity=1.4529e-5)
 # Hz, dB: pressure side, suction side, separation, laminar shedding, total. Below -100 dB the
 # program prints -100.
 TABLE = np.array(
@@ -39,9 +41,11 @@ def levels():
     section = Section(
         *(jnp.asarray(v) for v in (0.3048, 0.4572, 71.3, np.radians(1.516), 0.0, 0.0))
     )
-    layer = boundary_layer(section.chord, section.speed, section.angle_of_attack, VISCOSITY)
-    toward = radiation(0.0, 0.0, 1.22, 71.3 / SOUND_SPEED)
-    edge = trailing_edge_noise(TABLE[:, 0], section, layer, toward, SOUND_SPEED, VISCOSITY)
+    layer = boundary_layer(
+        section.chord, section.speed, section.angle_of_attack, AIR.kinematic_viscosity
+    )
+    toward = radiation(0.0, 0.0, 1.22, 71.3 / AIR.sound_speed)
+    edge = trailing_edge_noise(TABLE[:, 0], section, layer, toward, AIR)
     return {
         name: np.asarray(level_db(p)) for name, p in (edge._asdict() | {"total": sum(edge)}).items()
     }

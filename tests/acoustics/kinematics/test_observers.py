@@ -14,6 +14,8 @@ from propmdao.acoustics.kinematics.observers import (
     point,
     sphere,
 )
+from propmdao.records.air import Air
+from propmdao.records.states import RotorState
 
 
 def test_elevation_is_from_the_rotor_plane_negative_below():
@@ -115,6 +117,6 @@ def test_an_observer_among_the_blades_is_refused_with_its_distance():
 
 
 def test_a_sonic_tip_is_refused_with_its_mach_number():
-    require_subsonic_tip(1.0, 300.0, 100.0, 340.0)
+    require_subsonic_tip(1.0, RotorState(300.0, 100.0, Air(sound_speed=340.0)))
     with pytest.raises(ValueError, match=r"must be below 1 for Formulation 1A; it is 1\.031"):
-        require_subsonic_tip(1.0, 320.0, 140.0, 340.0 * 0.9965)
+        require_subsonic_tip(1.0, RotorState(320.0, 140.0, Air(sound_speed=340.0 * 0.9965)))

@@ -77,7 +77,7 @@ def test_air_takes_its_share_on_the_way_of_the_sound(record):
     """The tones are heard between 160 and 250 and between 800 and 1250 Hz."""
     time, bands = third_octave_history(record, RATE, BANDS_HZ, 0.5)
     _, distance, _ = seen(TIMES[0] + time)
-    air = Air(298.15, 0.7)
+    air = Air(temperature=298.15, relative_humidity=0.7)
     absorbed = absorb(bands, BANDS_HZ, distance, air)
     lost = level_db(bands.sum(axis=1)) - level_db(absorbed.sum(axis=1))
     least, most = (float(absorption_db_per_m(f, air)) for f in (160.0, 1250.0))

@@ -15,6 +15,7 @@ from propmdao.acoustics.propagation.paths import (
 from propmdao.acoustics.signals import Tones
 from propmdao.records.air import Air
 from propmdao.records.listening import Surroundings
+from propmdao.records.states import RotorState
 
 C = 340.0
 F = np.array([80.0, 400.0, 2500.0])
@@ -24,17 +25,21 @@ def monopole(positions, mach=0.0):
     """Tones of a source at rest in the hub; in flight only their phase and spreading are right."""
     d = np.asarray(way_flying_along(positions, mach)[0])[:, None]
     p = jnp.asarray(np.exp(2j * np.pi * F / C * d) / d)
-    return Tones(jnp.asarray(F), p, 0.5 * p)
+    return Tones(jnp.asarray(F), {"thickness": p, "loading": 0.5 * p})
+
+
+def flying(mach=0.0, air=Air(sound_speed=C)):  # noqa: B008 - frozen
+    return RotorState(0.0, mach * C, air)
 
 
 def test_without_surroundings_nothing_changes():
     places = np.array([[3.0, 1.0, -2.0], [1.0, 0.0, 4.0]])
     paths = sound_paths(places, Surroundings())
     np.testing.assert_array_equal(paths, places[None])
-    heard = tones_by_paths(monopole(places), paths, 0.1, Surroundings())
+    heard = tones_by_paths(monopole(places), paths, flying(0.1), Surroundings())
     np.testing.assert_array_equal(heard.total, monopole(places).total)
     power = np.arange(6.0).reshape(2, 3)
-    assert np.all(bands_by_paths(power, F, paths, 0.1, C, Surroundings()) == power)
+    assert np.all(bands_by_paths(power, F, paths, flying(0.1), Surroundings()) == power)
 
 
 @pytest.mark.parametrize("level_flight", [False, True])
@@ -43,11 +48,11 @@ def test_a_point_source_over_ground_is_that_and_its_image(level_flight):
     along, height = 7.0, 1.2  # of the microphone
     place = around.from_ground_axes([[along, 0.0, height - 5.0]])
     paths = sound_paths(place, around)
-    heard = tones_by_paths(monopole(paths.reshape(-1, 3)), paths, 0.0, around)
+    heard = tones_by_paths(monopole(paths.reshape(-1, 3)), paths, flying(), around)
     direct, image = np.hypot(along, 5.0 - height), np.hypot(along, 5.0 + height)
     expected = sum(np.exp(2j * np.pi * F / C * d) / d for d in (direct, image))
-    np.testing.assert_allclose(heard.thickness[0], expected, rtol=1e-12)
-    np.testing.assert_allclose(heard.loading[0], 0.5 * expected, rtol=1e-12)
+    np.testing.assert_allclose(heard.parts["thickness"][0], expected, rtol=1e-12)
+    np.testing.assert_allclose(heard.parts["loading"][0], 0.5 * expected, rtol=1e-12)
 
 
 @pytest.mark.parametrize("ground", ["flush", 5.0])
@@ -56,10 +61,12 @@ def test_on_the_ground_pressure_is_doubled(ground):
     place = np.array([[7.0, 2.0, -5.0]])
     paths = sound_paths(place, around)
     ends = paths.reshape(-1, 3)
-    heard = tones_by_paths(monopole(ends), paths, 0.0, around)
+    heard = tones_by_paths(monopole(ends), paths, flying(), around)
     np.testing.assert_allclose(heard.total, 2 * monopole(place).total, rtol=1e-12)
     power = np.tile([[1.0, 2.0, 3.0]], (len(ends), 1))
-    np.testing.assert_allclose(bands_by_paths(power, F, paths, 0.0, C, around), [[4.0, 8.0, 12.0]])
+    np.testing.assert_allclose(
+        bands_by_paths(power, F, paths, flying(), around), [[4.0, 8.0, 12.0]]
+    )
 
 
 def test_bands_interfere_as_the_tones_of_which_they_are_made():
@@ -69,31 +76,33 @@ def test_bands_interfere_as_the_tones_of_which_they_are_made():
     paths = sound_paths(place, around)
     d = np.linalg.norm(paths[:, 0], axis=-1)
     in_bands = np.asarray(
-        bands_by_paths(np.repeat(1 / d[:, None] ** 2, 3, axis=1), F, paths, 0.0, C, around)
+        bands_by_paths(np.repeat(1 / d[:, None] ** 2, 3, axis=1), F, paths, flying(), around)
     )
     for k, f in enumerate(F):
         fine = np.linspace(f / 10**0.05, f * 10**0.05, 4001)[:, None]
         p = np.sum(np.exp(2j * np.pi * fine / C * d) / d, axis=1)
         assert in_bands[0, k] == pytest.approx(np.mean(np.abs(p) ** 2), rel=1e-3)
     high = np.asarray(
-        bands_by_paths(np.ones((2, 1)), [1e4], sound_paths([[9.0, 0, 3.0]], around), 0.0, C, around)
+        bands_by_paths(
+            np.ones((2, 1)), [1e4], sound_paths([[9.0, 0, 3.0]], around), flying(), around
+        )
     )
     assert high[0, 0] == pytest.approx(2.0, rel=0.02)
 
 
 def test_air_takes_from_both_ways_at_the_frequency_that_it_hears():
-    air = Air()
-    around = Surroundings(air=air)
+    air = Air(sound_speed=C)
+    around = Surroundings(absorption=True)
     mach = 0.3
     place = np.array([[0.0, 0.0, 100.0], [0.0, 0.0, -100.0]])  # ahead and behind
     paths = sound_paths(place, around)
-    heard = tones_by_paths(monopole(place, mach), paths, mach, around)
+    heard = tones_by_paths(monopole(place, mach), paths, flying(mach, air), around)
     lost = np.asarray(spl_db(monopole(place, mach).total) - spl_db(heard.total))
     # Ahead the sound runs after the observer: 100 m / (1 - M), shortened waves.
     for i, sign in enumerate((1.0, -1.0)):
         way, f = 100.0 / (1 - sign * mach), F / (1 - sign * mach)
         np.testing.assert_allclose(lost[i], absorption_db_per_m(f, air) * way, rtol=1e-9)
-    bands = bands_by_paths(np.ones((2, 3)), F, paths, mach, C, around)
+    bands = bands_by_paths(np.ones((2, 3)), F, paths, flying(mach, air), around)
     np.testing.assert_allclose(level_db(np.ones((2, 3))) - level_db(bands), lost, rtol=1e-9)
 
 
@@ -116,7 +125,17 @@ def test_observers_below_the_ground_are_refused():
 
 def test_surroundings_say_what_they_are():
     assert str(Surroundings()) == "free field"
-    full = Surroundings(2.5, True, Air(293.15, 0.5))
-    assert str(full) == (
-        "hard ground 2.5 m below the hub, level flight, absorbing air of 20 deg C, 50 %, 101325 Pa"
-    )
+    full = Surroundings(2.5, level_flight=True, absorption=True)
+    assert str(full) == "hard ground 2.5 m below the hub, level flight, absorbing air"
+
+
+def test_air_that_absorbs_is_one_that_the_standard_knows():
+    hot = flying(air=Air(temperature=400.0))
+    place = np.array([[3.0, 1.0, -2.0]])
+    around = Surroundings(absorption=True)
+    paths = sound_paths(place, around)
+    with pytest.raises(ValueError, match="absorption: temperature must be within -20 ... 50"):
+        tones_by_paths(monopole(place), paths, hot, around)
+    with pytest.raises(ValueError, match="absorption: temperature must be within -20 ... 50"):
+        bands_by_paths(np.ones((1, 3)), F, paths, hot, around)
+    tones_by_paths(monopole(place), paths, hot, Surroundings())

@@ -10,16 +10,18 @@ import pytest
 from propmdao.acoustics.kinematics.motion import blade_motions, rotation, translation
 from propmdao.acoustics.kinematics.observers import arc
 from propmdao.acoustics.kinematics.reception import Observers, source_times
-from propmdao.acoustics.sources.advanced_time import loading_history, thickness_history
+from propmdao.acoustics.sources.advanced_time import source_history
 from propmdao.acoustics.sources.moving_sources import UnsteadySources, sample, unsteady_loads
+from propmdao.records.air import Air
 from propmdao.records.loads import PointLoads
 from propmdao.records.panels import Panels
 
 RHO, C = 1.2, 340.0
+AIR = Air(density=RHO, sound_speed=C)
 REST = np.zeros(3)
 
 
-def at(*positions, velocity=REST):
+def observers_at(*positions, velocity=REST):
     return Observers(jnp.atleast_2d(jnp.asarray(positions, float)), jnp.asarray(velocity, float))
 
 
@@ -31,14 +33,17 @@ def test_tones_of_a_flying_rotor_within_a_hundredth_of_a_decibel(slow_flyer, ele
     n, n_harmonics = 512, 6
     turn = 2 * np.pi / 1500.0
     t = np.arange(n) * turn / n
-    observers = at(*position, velocity=(0, 0, speed))
+    observers = observers_at(*position, velocity=(0, 0, speed))
     thickness, loading = np.zeros(n), np.zeros(n)
     for motion in blade_motions([0, np.pi], 1500.0, (translation(velocity=(0, 0, speed)),)):
         tau = source_times(motion, rotor.panels.center, observers, t, C)
-        thickness += thickness_history(rotor.panels, motion, tau, observers, t, RHO, C)[0]
-        loading += loading_history(rotor.loads, motion, tau, observers, t, C)[0]
+        thickness += source_history("thickness", rotor.panels, motion, tau, observers, t, AIR)[0]
+        loading += source_history("loading", rotor.loads, motion, tau, observers, t, AIR)[0]
     tones = rotor.tones(position, n_harmonics)
-    for history, reference in ((thickness, tones.thickness[0]), (loading, tones.loading[0])):
+    for history, reference in (
+        (thickness, tones.parts["thickness"][0]),
+        (loading, tones.parts["loading"][0]),
+    ):
         spectrum = np.conj(np.fft.rfft(history)) / n
         amplitude = spectrum[2 * np.arange(1, n_harmonics + 1)]
         assert np.abs(20 * np.log10(np.abs(amplitude / np.asarray(reference)))).max() < 0.01
@@ -81,7 +86,10 @@ def test_pulsating_body_in_uniform_motion(observer_velocity):
 
         return RHO * volume * jax.jvp(rate, (t,), (1.0,))[1]
 
-    observers, motion = at(START, velocity=observer_velocity), (translation(velocity=VELOCITY),)
+    observers, motion = (
+        observers_at(START, velocity=observer_velocity),
+        (translation(velocity=VELOCITY),),
+    )
     sides = np.vstack([np.eye(3), -np.eye(3)])
     tau = source_times(motion, 1e-3 * sides, observers, T, C)
     # a cube of 1 mm that grows and shrinks
@@ -90,7 +98,7 @@ def test_pulsating_body_in_uniform_motion(observer_velocity):
     body = UnsteadySources(
         *(q[:, None, None] * sides / 2 for q in side), *(q[:, None, None] * sides for q in area[:2])
     )
-    product = thickness_history(body, motion, tau, observers, T, RHO, C)[0]
+    product = source_history("thickness", body, motion, tau, observers, T, AIR)[0]
     reference = exact(T)
     # interpolation: (2 pi / 100)^4 / 43 = 4e-7; size of the cube: 1e-7
     np.testing.assert_allclose(product, reference, atol=2e-6 * np.ptp(reference))
@@ -116,11 +124,14 @@ def test_oscillating_force_in_uniform_motion(observer_velocity):
         gradient = jax.grad(lambda x: spread(swell, x, t))(START + observer_velocity * t)
         return -gradient @ force
 
-    observers, motion = at(START, velocity=observer_velocity), (translation(velocity=VELOCITY),)
+    observers, motion = (
+        observers_at(START, velocity=observer_velocity),
+        (translation(velocity=VELOCITY),),
+    )
     tau = source_times(motion, REST, observers, T, C)
     value, rate, _ = derivatives(swell, tau)
     loads = unsteady_loads(REST[None], value[:, None, None] * force, rate[:, None, None] * force)
-    product = loading_history(loads, motion, tau, observers, T, C)[0]
+    product = source_history("loading", loads, motion, tau, observers, T, AIR)[0]
     reference = exact(T)
     np.testing.assert_allclose(product, reference, atol=2e-6 * np.ptp(reference))
 
@@ -129,15 +140,21 @@ def test_doppler_shift_of_a_flyover():
     """f / (1 - M) ahead and f / (1 + M) behind, from 1 km to 1 km past, within 0.1 %."""
     frequency, mach = 100.0, 0.3
     motion = (translation(offset=(-1000, 0, 0), velocity=(mach * C, 0, 0)),)
-    observers = at((0.0, 1.0, 0.0))
+    observers = observers_at((0.0, 1.0, 0.0))
     for begin, expected in ((5.0, frequency / (1 - mach)), (15.0, frequency / (1 + mach))):
         t = begin + np.arange(4000) / 8000
         tau = source_times(motion, REST, observers, t, C)
         phase = 2 * np.pi * frequency * tau[:, None, None]
         force = np.array([1.0, 0.0, 0.0])
         rate = -2 * np.pi * frequency * np.sin(phase) * force
-        p = loading_history(
-            unsteady_loads([REST], np.cos(phase) * force, rate), motion, tau, observers, t, C
+        p = source_history(
+            "loading",
+            unsteady_loads([REST], np.cos(phase) * force, rate),
+            motion,
+            tau,
+            observers,
+            t,
+            AIR,
         )[0]
         up = np.flatnonzero((p[:-1] < 0) & (p[1:] >= 0))
         crossing = t[up] - p[up] * (t[1] - t[0]) / (p[up + 1] - p[up])
@@ -148,7 +165,7 @@ def test_doppler_shift_of_a_flyover():
 def test_many_panels_in_chunks_are_the_sum_of_their_parts(slow_flyer, monkeypatch):
     """More panels times source times than are worked on at once, and a last chunk that is short."""
     t = np.arange(600) * 1e-5
-    (motion,), observers = blade_motions([0.0], 900.0), at((1.0, 0.5, -1.0))
+    (motion,), observers = blade_motions([0.0], 900.0), observers_at((1.0, 0.5, -1.0))
     panels = slow_flyer.panels
     tau = source_times(motion, panels.center, observers, t, C)
     half = panels.center.shape[0] // 2
@@ -158,23 +175,24 @@ def test_many_panels_in_chunks_are_the_sum_of_their_parts(slow_flyer, monkeypatc
     ]
     assert half * tau.size > 32768
     whole, *halves = (
-        thickness_history(q, motion, tau, observers, t, RHO, C)[0] for q in (panels, *parts)
+        source_history("thickness", q, motion, tau, observers, t, AIR)[0] for q in (panels, *parts)
     )
     np.testing.assert_allclose(whole, halves[0] + halves[1], atol=1e-12 * np.ptp(whole))
 
 
 def test_source_steps_of_any_length_meet_the_observers_clock():
-    motion, observers = (rotation((0, 0, 1), rate=300.0),), at((2.0, 0.0, -1.0))
+    motion, observers = (rotation((0, 0, 1), rate=300.0),), observers_at((2.0, 0.0, -1.0))
     loads = PointLoads(jnp.array([[0.5, 0, 0]]), jnp.array([[0.0, 1.0, -2.0]]))
     t = np.linspace(0, 0.02, 257)
     fine, finer, coarse = (
-        loading_history(
+        source_history(
+            "loading",
             loads,
             motion,
             source_times(motion, loads.position, observers, t, C, step),
             observers,
             t,
-            C,
+            AIR,
         )
         for step in (1e-4, 1e-5, 3e-4)
     )
@@ -185,7 +203,7 @@ def test_source_steps_of_any_length_meet_the_observers_clock():
 
 def test_source_steps_are_not_longer_than_the_record():
     t = np.linspace(0, 0.1, 65)
-    tau = source_times((), REST, at((34.0, 0, 0)), t, C, step=1e30)
+    tau = source_times((), REST, observers_at((34.0, 0, 0)), t, C, step=1e30)
     assert np.diff(tau).max() <= 0.1
     assert tau[0] <= -0.1 - 0.1 and tau[-1] >= 0.1
 
@@ -193,20 +211,22 @@ def test_source_steps_are_not_longer_than_the_record():
 def test_what_no_source_time_reaches_is_not_a_number():
     loads = PointLoads(jnp.zeros((1, 3)), jnp.ones((1, 3)))
     t = np.linspace(0.0, 1.0, 101)
-    p = loading_history(loads, (), np.linspace(0.0, 0.5, 51), at((34.0, 0, 0)), t, C)[0]
+    p = source_history(
+        "loading", loads, (), np.linspace(0.0, 0.5, 51), observers_at((34.0, 0, 0)), t, AIR
+    )[0]
     heard = np.isfinite(p)  # from 0.1 + one step to 0.6 - one step
     np.testing.assert_array_equal(heard, (t > 0.109) & (t < 0.589))
 
 
 def test_derivatives_pass_through(slow_flyer):
     t = np.arange(64) * 1e-4
-    (motion,), observers = blade_motions([0.0], 400.0), at((1.0, 0.5, -1.0))
+    (motion,), observers = blade_motions([0.0], 400.0), observers_at((1.0, 0.5, -1.0))
     loads = slow_flyer.loads
     tau = source_times(motion, loads.position, observers, t, C)
 
     def energy(scale):
         moved = PointLoads(scale * loads.position, loads.force)
-        return jnp.sum(loading_history(moved, motion, tau, observers, t, C) ** 2)
+        return jnp.sum(source_history("loading", moved, motion, tau, observers, t, AIR) ** 2)
 
     difference = (energy(1 + 1e-5) - energy(1 - 1e-5)) / 2e-5
     assert jax.grad(energy)(1.0) == pytest.approx(float(difference), rel=1e-6)
@@ -240,11 +260,11 @@ class TestTables:
     ],
 )
 def test_bad_input_is_one_clear_line(change, message):
-    given = {"t": np.linspace(0, 1, 9), "tau": np.linspace(0, 1, 9), "velocity": REST} | change
+    case = {"t": np.linspace(0, 1, 9), "tau": np.linspace(0, 1, 9), "velocity": REST} | change
     loads = PointLoads(jnp.zeros((1, 3)), jnp.ones((1, 3)))
-    observers = at((1.0, 0, 0), velocity=given["velocity"])
+    observers = observers_at((1.0, 0, 0), velocity=case["velocity"])
     with pytest.raises(ValueError, match=message):
-        loading_history(loads, (), given["tau"], observers, given["t"], C)
+        source_history("loading", loads, (), case["tau"], observers, case["t"], AIR)
 
 
 @pytest.mark.parametrize(
@@ -253,4 +273,4 @@ def test_bad_input_is_one_clear_line(change, message):
 def test_supersonic_sources_are_refused(motion):
     points = [[-1.0, 0, 0], [1.0, 0, 0]]
     with pytest.raises(ValueError, match="must be slower than sound"):
-        source_times((motion,), points, at((9.0, 0, 0)), [0.0, 0.1], C)
+        source_times((motion,), points, observers_at((9.0, 0, 0)), [0.0, 0.1], C)

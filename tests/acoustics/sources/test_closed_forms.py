@@ -63,7 +63,7 @@ class TestNearField:
             # -F . grad_x = F . grad_y
             return -jax.jvp(green, distance, (fx, fy, jnp.full_like(fx, force[2])))[1]
 
-        loading = rotor.tones(np.array(observer)).loading[0]
+        loading = rotor.tones(np.array(observer)).parts["loading"][0]
         np.testing.assert_allclose(loading, exact(rotor, observer, dipole), rtol=1e-9)
 
     def test_turning_volume(self, point_volume, speed, observer):
@@ -80,7 +80,7 @@ class TestNearField:
 
             return rotor.density * volume * convected(convected(green))(*distance)
 
-        thickness = rotor.tones(np.array(observer)).thickness[0]
+        thickness = rotor.tones(np.array(observer)).parts["thickness"][0]
         # the cube is 0.1 mm wide, 1e-4 of everything else, and its sides cancel to 1e-4
         np.testing.assert_allclose(thickness, exact(rotor, observer, displacement), rtol=1e-6)
 
@@ -109,14 +109,14 @@ class TestFarField:
         direction = (axial * np.sin(el) + tangential * n / q * np.cos(el)) * jv(n, q)
         direction = direction + 1j * radial * np.cos(el) * jvp(n, q)
         reference = spread * omega / rotor.sound_speed * direction
-        assert level_error(rotor.tones(observer).loading[0], reference) < 0.01
+        assert level_error(rotor.tones(observer).parts["loading"][0], reference) < 0.01
 
     def test_deming_thickness_of_a_compact_section(self, point_volume, elevation_deg):
         """Deming 1938 (NACA TN 679) for one section of volume v per blade."""
         rotor = point_volume((RADIUS, 0, 0), 2e-3, rotation_speed=250.0)
         n, omega, q, spread, observer = self.far(rotor, elevation_deg)
         reference = spread * rotor.density * 2e-3 * omega**2 * jv(n, q)
-        assert level_error(rotor.tones(observer).thickness[0], reference) < 0.01
+        assert level_error(rotor.tones(observer).parts["thickness"][0], reference) < 0.01
 
     def test_blade_volume_alone_decides_the_thickness_of_a_slow_rotor(
         self, slow_flyer, elevation_deg
@@ -132,5 +132,5 @@ class TestFarField:
         observer = arc(distance, elevation_deg)[0]
         reference = 2 * rotor.density * (40.0 * k * np.cos(np.radians(elevation_deg))) ** 2
         reference = reference * np.abs(moment) / 8 / (4 * np.pi * distance)
-        first = rotor.tones(observer, 1).thickness[0, 0]
+        first = rotor.tones(observer, 1).parts["thickness"][0, 0]
         assert np.abs(first) == pytest.approx(reference, rel=0.02)  # of the coarse panels

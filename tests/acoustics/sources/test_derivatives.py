@@ -8,8 +8,10 @@ import pytest
 from propmdao.acoustics.kinematics.observers import arc
 from propmdao.acoustics.levels.decibels import oaspl_db
 from propmdao.acoustics.sources.formulation1a import tones
+from propmdao.records.air import Air
 from propmdao.records.loads import PointLoads
 from propmdao.records.panels import Panels
+from propmdao.records.states import RotorState
 
 OBSERVERS = np.array([[1.2, 0.4, -1.3], [-0.5, 1.0, 0.7]])
 N_HARMONICS = 4
@@ -19,28 +21,19 @@ def tone_function(rotor, n_harmonics=N_HARMONICS):
     """Make `tones` a function of all it can be differentiated by."""
 
     def function(panels, loads, rotation_speed, speed, density, sound_speed, observers):
-        result = tones(
-            panels,
-            loads,
-            rotor.n_blades,
-            rotation_speed,
-            speed,
-            density,
-            sound_speed,
-            observers,
-            n_harmonics,
-        )
-        return result.thickness, result.loading
+        state = RotorState(rotation_speed, speed, Air(density=density, sound_speed=sound_speed))
+        result = tones(panels, loads, rotor.n_blades, state, observers, n_harmonics)
+        return result.parts["thickness"], result.parts["loading"]
 
-    at = (rotor.panels, rotor.loads, rotor.rotation_speed, rotor.speed, rotor.density)
-    at = (*at, rotor.sound_speed, jnp.asarray(OBSERVERS))
-    return function, jax.tree.map(lambda q: jnp.asarray(q, float), at)
+    values = (rotor.panels, rotor.loads, rotor.rotation_speed, rotor.speed, rotor.density)
+    values = (*values, rotor.sound_speed, jnp.asarray(OBSERVERS))
+    return function, jax.tree.map(lambda q: jnp.asarray(q, float), values)
 
 
-def direction(of, seed):
+def direction(values, seed):
     """Change everything by about one part, so that no input hides behind another."""
     rng = np.random.default_rng(seed)
-    return jax.tree.map(lambda q: q * rng.normal(size=q.shape), of)
+    return jax.tree.map(lambda q: q * rng.normal(size=q.shape), values)
 
 
 @pytest.fixture(scope="module")
@@ -50,26 +43,26 @@ def rotor(slow_flyer):
 
 @pytest.mark.parametrize("index", range(7))
 def test_forward_derivative_is_the_central_difference(rotor, index):
-    function, at = tone_function(rotor)
-    only = jax.tree.map(jnp.zeros_like, at)
-    only = (*only[:index], direction(at, 1)[index], *only[index + 1 :])
-    actual = jax.jvp(function, at, only)[1]
+    function, values = tone_function(rotor)
+    only = jax.tree.map(jnp.zeros_like, values)
+    only = (*only[:index], direction(values, 1)[index], *only[index + 1 :])
+    actual = jax.jvp(function, values, only)[1]
     step = 1e-5
-    ahead = function(*jax.tree.map(lambda q, d: q + step * d, at, only))
-    back = function(*jax.tree.map(lambda q, d: q - step * d, at, only))
+    ahead = function(*jax.tree.map(lambda q, d: q + step * d, values, only))
+    back = function(*jax.tree.map(lambda q, d: q - step * d, values, only))
     for a, f, b in zip(actual, ahead, back, strict=True):
         difference = (f - b) / (2 * step)
         np.testing.assert_allclose(a, difference, rtol=1e-5, atol=1e-7 * np.abs(f).max())
 
 
 def test_reverse_derivative_is_the_transpose_of_the_forward_one(rotor):
-    function, at = tone_function(rotor)
+    function, values = tone_function(rotor)
     rng = np.random.default_rng(2)
     shape = (len(OBSERVERS), N_HARMONICS)
     weights = tuple(rng.normal(size=shape) + 1j * rng.normal(size=shape) for _ in range(2))
-    d = direction(at, 3)
-    forward = jax.jvp(function, at, d)[1]
-    pull = jax.vjp(function, *at)[1](tuple(jnp.asarray(w) for w in weights))
+    d = direction(values, 3)
+    forward = jax.jvp(function, values, d)[1]
+    pull = jax.vjp(function, *values)[1](tuple(jnp.asarray(w) for w in weights))
     one = sum(np.sum(w * f).real for w, f in zip(weights, forward, strict=True))
     other = sum(jax.tree.leaves(jax.tree.map(lambda g, q: jnp.sum(g * q), pull, d)))
     assert one == pytest.approx(float(other), rel=1e-11)
@@ -79,8 +72,8 @@ def test_jacobians_by_columns_and_by_rows_agree(rotor):
     """A component may ask for whole Jacobians, which maps the derivatives over many directions."""
 
     def levels(two):
-        function, at = tone_function(rotor)
-        thickness, loading = function(*at[:2], two[0], two[1], *at[4:])
+        function, values = tone_function(rotor)
+        thickness, loading = function(*values[:2], two[0], two[1], *values[4:])
         return oaspl_db(thickness + loading)
 
     two = jnp.array([1300.0, 30.0])
@@ -91,11 +84,13 @@ def test_jacobians_by_columns_and_by_rows_agree(rotor):
 
 @pytest.mark.parametrize("speed", [0.0, 30.0])
 def test_a_rotor_at_rest_has_no_tones_and_finite_derivatives(rotor, speed):
-    function, at = tone_function(rotor.with_(rotation_speed=0.0, speed=speed))
-    for amplitude in function(*at):
+    function, values = tone_function(rotor.with_(rotation_speed=0.0, speed=speed))
+    for amplitude in function(*values):
         assert not np.any(amplitude)
-    gradient = jax.grad(lambda *q: oaspl_db(sum(function(*q))).sum(), argnums=tuple(range(7)))(*at)
-    tangents = jax.jvp(function, at, direction(at, 4))[1]
+    gradient = jax.grad(lambda *q: oaspl_db(sum(function(*q))).sum(), argnums=tuple(range(7)))(
+        *values
+    )
+    tangents = jax.jvp(function, values, direction(values, 4))[1]
     for leaf in jax.tree.leaves((gradient, tangents)):
         assert np.all(np.isfinite(leaf))
 
@@ -103,13 +98,13 @@ def test_a_rotor_at_rest_has_no_tones_and_finite_derivatives(rotor, speed):
 def test_reverse_derivative_of_a_full_surface_at_nine_observers_needs_megabytes(slow_flyer):
     n = 5200
     surface = Panels(jnp.ones((n, 3)), jnp.ones((n, 3)))
-    function, at = tone_function(slow_flyer, n_harmonics=10)
-    at = (surface, PointLoads(jnp.ones((400, 3)), jnp.ones((400, 3))), *at[2:6])
-    at = (*at, jnp.asarray(arc(1.905, np.linspace(-45, 45, 9))))
+    function, values = tone_function(slow_flyer, n_harmonics=10)
+    values = (surface, PointLoads(jnp.ones((400, 3)), jnp.ones((400, 3))), *values[2:6])
+    values = (*values, jnp.asarray(arc(1.905, np.linspace(-45, 45, 9))))
 
-    def pull_back(at, weights):
-        return jax.vjp(function, *at)[1](weights)
+    def pull_back(values, weights):
+        return jax.vjp(function, *values)[1](weights)
 
     weights = (jnp.ones((9, 10), complex),) * 2
-    workspace = jax.jit(pull_back).lower(at, weights).compile().memory_analysis()
+    workspace = jax.jit(pull_back).lower(values, weights).compile().memory_analysis()
     assert workspace.temp_size_in_bytes < 64 * 2**20  # 14 MiB; one observer unrolled takes 64

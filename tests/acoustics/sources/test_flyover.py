@@ -15,9 +15,11 @@ from propmdao.acoustics.sources.flyover import flyover_histories
 from propmdao.acoustics.sources.moving_sources import PeriodicLoads
 from propmdao.acoustics.sources.periodic import rotor_tones
 from propmdao.acoustics.sources.rotors import Rotor, equally_spaced, mirrored, rotor_histories
+from propmdao.records.air import Air
 
 # A tip Mach number of 0.4: at 5 kHz no tone is within 80 dB of the first.
-RHO, C, OMEGA = 1.2, 340.0, 1000.0
+C, OMEGA = 340.0, 1000.0
+AIR = Air(density=1.2, sound_speed=C)
 FS = 44100.0
 REST = jnp.zeros(3)
 
@@ -48,10 +50,10 @@ def test_the_record_is_that_of_marching(rotor, tilted, which):
     flight = (translation(-30 * direction, 60 * direction),)
     observers = Observers(jnp.array([[8.0, 1.0, 0.0]]), REST)
     t = 0.5 + np.arange(1024) / FS
-    fast = flyover_histories(rotors, observers, t, RHO, C, flight, 5000.0)
-    marched = rotor_histories(rotors, observers, t, RHO, C, flight, step=1 / FS / 3)
+    fast = flyover_histories(rotors, observers, t, AIR, flight, 5000.0)
+    marched = rotor_histories(rotors, observers, t, AIR, flight, step=1 / FS / 3)
     for name in ("thickness", "loading"):
-        product, expected = (getattr(q, name)[0] for q in (fast, marched))
+        product, expected = (q.parts[name][0] for q in (fast, marched))
         difference = expected - product
         # the steady field that the march has besides changes over metres of the way
         slow = np.polynomial.Polynomial.fit(t, difference, 2)(t)
@@ -68,7 +70,7 @@ def test_doppler_shift(rotor):
         distance = np.hypot(z, 100.0)
         expected = passage / (1 + 0.3 * z / distance)
         t = emission + distance / C + np.arange(2048) / FS
-        p = flyover_histories([rotor], observers, t, RHO, C, flight, 500.0).total[0]
+        p = flyover_histories([rotor], observers, t, AIR, flight, 500.0).total[0]
         up = np.flatnonzero((p[:-1] < 0) & (p[1:] >= 0))
         crossing = t[up] - p[up] / (p[up + 1] - p[up]) / FS
         heard = (crossing.size - 1) / (crossing[-1] - crossing[0])
@@ -84,12 +86,11 @@ def test_who_flies_along_hears_steady_tones(rotor):
         [rotor],
         Observers(jnp.asarray(place), jnp.asarray(velocity)),
         t,
-        RHO,
-        C,
+        AIR,
         (translation(velocity=velocity),),
         2000.0,
     )
-    tones = rotor_tones(rotor, velocity, RHO, C, place, 4)
+    tones = rotor_tones(rotor, velocity, AIR, place, 4)
     product = np.conj(np.fft.rfft(record.total[0]))[[2, 4, 6, 8]] / n
     np.testing.assert_allclose(product, tones.total[0], atol=1e-10 * np.abs(product).max())
 
@@ -99,7 +100,7 @@ def test_straight_ahead_on_the_axis_of_a_tilted_shaft_there_is_no_miss_distance(
     hub = np.array([0.3, 0.0, -0.3])
     observers = Observers(jnp.asarray([hub + [0, 0, 20.0]]), REST)
     t = np.arange(512) / FS
-    arguments = [tilted], observers, t, RHO, C, flight
+    arguments = [tilted], observers, t, AIR, flight
     fast, marched = flyover_histories(*arguments, 5000.0), rotor_histories(*arguments)
     difference = (fast.total - marched.total)[0]
     slow = np.polynomial.Polynomial.fit(t, difference, 2)(t)
@@ -108,15 +109,15 @@ def test_straight_ahead_on_the_axis_of_a_tilted_shaft_there_is_no_miss_distance(
 
 class TestRefused:
     def refused(self, message, rotors, **changes):
-        given = {
+        case = {
             "place": (50.0, 0, 0),
             "flight": (translation(velocity=(0, 0, 20.0)),),
             "t": np.arange(64) / FS,
             "top": 2000.0,
         } | changes
-        observers = Observers(jnp.asarray([given["place"]], float), REST)
+        observers = Observers(jnp.asarray([case["place"]], float), REST)
         with pytest.raises(ValueError, match=message):
-            flyover_histories(rotors, observers, given["t"], RHO, C, given["flight"], given["top"])
+            flyover_histories(rotors, observers, case["t"], AIR, case["flight"], case["top"])
 
     def test_turning_flight(self, rotor):
         self.refused("flight must be uniform", [rotor], flight=(rotation((0, 0, 1), rate=0.1),))

@@ -15,9 +15,11 @@ from propmdao.acoustics.sources import rotors
 from propmdao.acoustics.sources.moving_sources import AperiodicLoads, PeriodicLoads
 from propmdao.acoustics.sources.periodic import rotor_tones, symmetry
 from propmdao.acoustics.sources.rotors import Rotor, equally_spaced, mirrored, rotor_histories
+from propmdao.records.air import Air
 from propmdao.records.loads import PointLoads
 
 RHO, C, OMEGA = 1.2, 340.0, 1500.0  # a tip Mach number of 0.6
+AIR = Air(density=RHO, sound_speed=C)
 PLACES = arc(1.905, [-45.0, 20.0])
 
 
@@ -60,12 +62,12 @@ def amplitudes(history, orders):
 def agree(rotor, velocity, n_harmonics, decibel=0.01):
     """Marching and the Fourier form, for observers that fly along: harmonics within 40 dB."""
     flight = (translation(velocity=velocity),)
-    marched = rotor_histories([rotor], flying(velocity), one_turn(rotor), RHO, C, flight)
-    tones = rotor_tones(rotor, velocity, RHO, C, PLACES, n_harmonics)
+    marched = rotor_histories([rotor], flying(velocity), one_turn(rotor), AIR, flight)
+    tones = rotor_tones(rotor, velocity, AIR, PLACES, n_harmonics)
     orders = np.round(tones.frequency_hz / (OMEGA / 2 / np.pi)).astype(int)
     for name in ("thickness", "loading"):
-        expected = np.asarray(getattr(tones, name))
-        product = amplitudes(getattr(marched, name), np.abs(orders))
+        expected = np.asarray(tones.parts[name])
+        product = amplitudes(marched.parts[name], np.abs(orders))
         if orders[0] < 0:
             product = np.conj(product)
         loud = np.abs(expected) > 0.01 * np.abs(expected).max(axis=1, keepdims=True)
@@ -92,21 +94,21 @@ def test_marching_and_tones_of_a_rotor_that_turns_the_other_way(rotor, periodic)
 def test_equal_blades_in_axial_flight_are_the_fast_form(slow_flyer, speed):
     case = slow_flyer.with_(rotation_speed=OMEGA, speed=speed, density=RHO, sound_speed=C)
     rotor = Rotor(equally_spaced(2), OMEGA, case.panels, case.loads)
-    general = rotor_tones(rotor, (0, 0, speed), RHO, C, PLACES, 6)
+    general = rotor_tones(rotor, (0, 0, speed), AIR, PLACES, 6)
     fast = case.tones(PLACES, 6)
     np.testing.assert_allclose(general.frequency_hz, fast.frequency_hz)
     for name in ("thickness", "loading"):
-        expected = np.asarray(getattr(fast, name))
+        expected = np.asarray(fast.parts[name])
         np.testing.assert_allclose(
-            getattr(general, name), expected, atol=1e-11 * np.abs(expected).max()
+            general.parts[name], expected, atol=1e-11 * np.abs(expected).max()
         )
 
 
 def test_mirror_image_is_heard_at_the_mirrored_place(rotor, periodic):
     rotor = dataclasses.replace(rotor, mount=(), loads=periodic)
     places = PLACES + [0.0, 0.7, 0.0]
-    right = rotor_tones(rotor, (20.0, 5.0, 0.0), RHO, C, places, 6)
-    left = rotor_tones(mirrored(rotor), (20.0, -5.0, 0.0), RHO, C, places * [1, -1, 1], 6)
+    right = rotor_tones(rotor, (20.0, 5.0, 0.0), AIR, places, 6)
+    left = rotor_tones(mirrored(rotor), (20.0, -5.0, 0.0), AIR, places * [1, -1, 1], 6)
     np.testing.assert_allclose(left.frequency_hz, -right.frequency_hz)
     # the same pressure, written with frequencies of the other sign
     largest = np.abs(np.asarray(right.total)).max()
@@ -129,13 +131,13 @@ def test_how_often_the_blades_repeat(azimuths, expected):
 def test_scissored_pairs_have_every_second_harmonic_and_no_other(slow_flyer):
     loads = slow_flyer.loads
     pairs = Rotor([0.0, 0.5, np.pi, np.pi + 0.5], OMEGA, loads=loads)
-    blade = rotor_tones(Rotor([0.0], OMEGA, loads=loads), (0, 0, 0), RHO, C, PLACES, 6)
-    both = rotor_tones(pairs, (0, 0, 0), RHO, C, PLACES, 3)
+    blade = rotor_tones(Rotor([0.0], OMEGA, loads=loads), (0, 0, 0), AIR, PLACES, 6)
+    both = rotor_tones(pairs, (0, 0, 0), AIR, PLACES, 3)
     np.testing.assert_allclose(both.frequency_hz, blade.frequency_hz[1::2])
     orders = np.array([2, 4, 6])
-    expected = np.asarray(blade.loading)[:, 1::2] * 2 * (1 + np.exp(-0.5j * orders))
+    expected = np.asarray(blade.parts["loading"])[:, 1::2] * 2 * (1 + np.exp(-0.5j * orders))
     # azimuths enough for order 6 of one blade alone: rounding only
-    np.testing.assert_allclose(both.loading, expected, rtol=1e-9)
+    np.testing.assert_allclose(both.parts["loading"], expected, rtol=1e-9)
 
 
 def test_two_rotors_are_the_sum_of_their_pressures(rotor, slow_flyer):
@@ -143,24 +145,26 @@ def test_two_rotors_are_the_sum_of_their_pressures(rotor, slow_flyer):
     other = dataclasses.replace(other, mount=(translation((0, 0.4, 0)),))
     t = np.arange(200) * 1e-5
     listeners = flying((0, 0, 0))
-    both = rotor_histories([rotor, other], listeners, t, RHO, C)
-    alone = [rotor_histories([one], listeners, t, RHO, C) for one in (rotor, other)]
-    np.testing.assert_allclose(both.total, sum(h.total for h in alone), rtol=1e-13)
-    assert not alone[1].thickness.any()
+    both = rotor_histories([rotor, other], listeners, t, AIR)
+    first, second = (rotor_histories([single], listeners, t, AIR) for single in (rotor, other))
+    np.testing.assert_allclose(both.total, (first + second).total, rtol=1e-13)
+    assert not second.parts["thickness"].any()
 
 
 def test_a_record_in_segments_is_the_record_in_one(rotor, periodic, monkeypatch):
     rotor = dataclasses.replace(rotor, panels=None, loads=periodic)
     flight = (translation(velocity=(20.0, 0.0, 0.0)),)
     t = np.arange(700) * 1e-5
-    whole = rotor_histories([rotor], flying((0, 0, 0)), t, RHO, C, flight)
+    whole = rotor_histories([rotor], flying((0, 0, 0)), t, AIR, flight)
     monkeypatch.setattr(rotors, "_AT_ONCE", 1)
     parts = rotors.segments(700, 1)
     assert [(part.start, part.stop) for part in parts] == [(0, 256), (256, 512), (444, 700)]
-    pieces = rotor_histories([rotor], flying((0, 0, 0)), t, RHO, C, flight)
+    pieces = rotor_histories([rotor], flying((0, 0, 0)), t, AIR, flight)
     # source times of the pieces lie elsewhere: interpolation, 1e-4
     np.testing.assert_allclose(
-        pieces.loading, whole.loading, atol=1e-4 * np.ptp(whole.loading, axis=1).min()
+        pieces.parts["loading"],
+        whole.parts["loading"],
+        atol=1e-4 * np.ptp(whole.parts["loading"], axis=1).min(),
     )
 
 
@@ -178,9 +182,8 @@ def test_each_blades_own_loads_over_time(rotor, periodic):
             [dataclasses.replace(rotor, panels=None, loads=loads)],
             flying((0, 0, 0)),
             one_turn(rotor),
-            RHO,
-            C,
-        ).loading
+            AIR,
+        ).parts["loading"]
         for loads in (periodic, own)
     )
     np.testing.assert_allclose(product, expected, atol=2e-5 * np.ptp(expected))
@@ -192,9 +195,9 @@ def test_loads_that_end_too_early_are_refused(rotor):
     )
     rotor = dataclasses.replace(rotor, loads=loads)
     with pytest.raises(ValueError, match=r"table over 0 \.\.\. 0.001 s is asked for"):
-        rotor_histories([rotor], flying((0, 0, 0)), one_turn(rotor), RHO, C)
+        rotor_histories([rotor], flying((0, 0, 0)), one_turn(rotor), AIR)
     with pytest.raises(ValueError, match="loads of the rotor must repeat every turn"):
-        rotor_tones(rotor, (0, 0, 0), RHO, C, PLACES, 3)
+        rotor_tones(rotor, (0, 0, 0), AIR, PLACES, 3)
 
 
 def test_an_observer_in_the_disk_is_refused_with_its_distance(rotor):
@@ -204,7 +207,7 @@ def test_an_observer_in_the_disk_is_refused_with_its_distance(rotor):
     hub = np.array([0.1, -0.2, 0.05])
     listeners = flying((0, 0, 0), [[2.0, 0, 0], hub + [0, 0.03, 0]])
     with pytest.raises(ValueError, match=message):
-        rotor_histories([rotor], listeners, one_turn(rotor), RHO, C)
+        rotor_histories([rotor], listeners, one_turn(rotor), AIR)
 
 
 def test_what_does_not_turn_has_a_box_for_a_region():
@@ -226,29 +229,32 @@ def test_flying_through_an_observer_is_refused(rotor):
     flight = (translation((-1.0, 0.2, 0.0), velocity=(50.0, 0, 0)),)
     with pytest.raises(ValueError, match="observer 1 comes to 0.0"):
         rotor_histories(
-            [rotor], flying((0, 0, 0), [[0, 0, 0]]), np.linspace(0, 0.04, 400), RHO, C, flight
+            [rotor], flying((0, 0, 0), [[0, 0, 0]]), np.linspace(0, 0.04, 400), AIR, flight
         )
 
 
 def test_supersonic_and_empty_rotors_are_refused(rotor):
     fast = dataclasses.replace(rotor, rotation_speed=2600.0)
     with pytest.raises(ValueError, match="tip Mach number must be below 1"):
-        rotor_tones(fast, (0, 0, 0), RHO, C, PLACES, 3)
+        rotor_tones(fast, (0, 0, 0), AIR, PLACES, 3)
     with pytest.raises(ValueError, match="must be slower than sound"):
-        rotor_histories([fast], flying((0, 0, 0)), one_turn(fast), RHO, C)
+        rotor_histories([fast], flying((0, 0, 0)), one_turn(fast), AIR)
     with pytest.raises(ValueError, match="neither panels nor loads"):
-        rotor_tones(Rotor([0.0], 100.0), (0, 0, 0), RHO, C, PLACES, 3)
+        rotor_tones(Rotor([0.0], 100.0), (0, 0, 0), AIR, PLACES, 3)
 
 
-@pytest.mark.parametrize(("density", "c", "what"), [(0, C, "density"), (RHO, -1, "sound speed")])
-def test_air_that_is_none_is_refused(rotor, density, c, what):
+@pytest.mark.parametrize(
+    ("air", "what"),
+    [(Air(density=0.0), "density"), (Air(sound_speed=-1.0), "sound speed")],
+)
+def test_air_that_is_none_is_refused(rotor, air, what):
     with pytest.raises(ValueError, match=f"{what} must be positive; it is"):
-        rotor_tones(rotor, (0, 0, 0), density, c, PLACES, 3)
+        rotor_tones(rotor, (0, 0, 0), air, PLACES, 3)
     with pytest.raises(ValueError, match=f"{what} must be positive; it is"):
-        rotor_histories([rotor], flying((0, 0, 0)), one_turn(rotor), density, c)
+        rotor_histories([rotor], flying((0, 0, 0)), one_turn(rotor), air)
 
 
 def test_a_rotor_that_does_not_turn_has_no_tones():
     loads = PointLoads(jnp.array([[0.1, 0, 0]]), jnp.ones((1, 3)))
-    tones = rotor_tones(Rotor([0.0], 0.0, loads=loads), (0, 0, 0), RHO, C, PLACES, 2)
+    tones = rotor_tones(Rotor([0.0], 0.0, loads=loads), (0, 0, 0), AIR, PLACES, 2)
     assert not np.asarray(tones.total).any()
