@@ -25,7 +25,7 @@ from propmdao.acoustics.levels.weighting import oaspl_dba
 from propmdao.acoustics.sources.moving_sources import compact_sections
 from propmdao.acoustics.sources.periodic import rotor_tones
 from propmdao.acoustics.sources.rotors import Rotor
-from propmdao.formats.wopwop.write_case import write_case
+from propmdao.formats.wopwop.write_case import write_rotor_case
 from propmdao.records.air import Air
 from propmdao.records.loads import PointLoads
 from propmdao.records.units import RAD_PER_S
@@ -132,7 +132,7 @@ def main() -> None:
             observers = Observers(jnp.asarray(places), jnp.asarray(velocity))
             times = np.arange(1024) * 60 / options.rpm / 1024
             flight = (translation(velocity=velocity),)
-            write_case(options.wopwop, [rotor], [None], observers, times, air, flight)
+            write_rotor_case(options.wopwop, [rotor], [None], observers, times, air, flight)
     except ValueError as error:
         raise SystemExit(str(error)) from None
 

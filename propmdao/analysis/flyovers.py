@@ -61,8 +61,8 @@ def fly_over(analysis: Analysis, flight: Flight, *, sound: bool = False) -> Flyo
     -----
     Absorption uses the direct path's length for the reflected path as well.
     """
-    state, fidelity = analysis.state, analysis.model.fidelity
-    air, sound_speed = state.air, state.air.sound_speed
+    state = analysis.state
+    air, sound_speed = state.air, float(state.air.sound_speed)
     speed = float(state.speed)
     if flight.absorption:
         require_known_air(air)
@@ -71,7 +71,7 @@ def fly_over(analysis: Analysis, flight: Flight, *, sound: bool = False) -> Flyo
     if not analysis.rpm > 0.0:
         raise ValueError(f"rpm of a flyover must be positive; it is {analysis.rpm:g}")
     propeller = analysis.changed_propeller
-    emitted = fidelity.n_harmonics * propeller.n_blades * analysis.rpm / 60.0
+    emitted = _highest_tone(analysis, propeller)
     highest = emitted / (1.0 - speed / sound_speed)  # heard from ahead
     rate = SAMPLE_RATE if sound else max(2000, 2 * round(2.0 * highest))
     each = 2 * round(0.5 * STEP * rate)
@@ -87,7 +87,7 @@ def fly_over(analysis: Analysis, flight: Flight, *, sound: bool = False) -> Flyo
     if flight.microphone_height > 0.0:
         places.append([0.0, flight.sideline, -flight.microphone_height])
     track = flyover_track(flight.height, speed)
-    clock = start + np.arange(n_steps * each) / rate
+    clock: Floats = start + np.arange(n_steps * each) / rate
     tones = _tones(analysis, propeller, places, clock, track)
     held = BANDS_HZ[BANDS_HZ * 10**0.06 < 0.5 * rate]
     records = {**tones.parts, "total": tones.total}
@@ -124,6 +124,12 @@ def fly_over(analysis: Analysis, flight: Flight, *, sound: bool = False) -> Flyo
     return Flyover(time, parts, sights[0], pressure)
 
 
+def _highest_tone(analysis: Analysis, propeller: Propeller) -> float:
+    """Frequency of the highest tone that is resolved, as the rotor emits it [Hz]."""
+    passage = propeller.n_blades * analysis.rpm / 60.0
+    return float(analysis.model.fidelity.n_harmonics * passage)
+
+
 def _tones(
     analysis: Analysis,
     propeller: Propeller,
@@ -140,7 +146,7 @@ def _tones(
         surface_panels(surface),
         analysis.loads.point_loads,
     )
-    highest = fidelity.n_harmonics * propeller.n_blades * analysis.rpm / 60.0
+    highest = _highest_tone(analysis, propeller)
     histories = flyover_histories(
         [rotor], fixed_observers(places), clock, analysis.point.air, track, highest
     )

@@ -32,6 +32,7 @@ from propmdao.geometry.blade import Blade
 from propmdao.geometry.meshes import MeshRadii, blade_meshes, mesh_radii
 from propmdao.propeller.changes import Change
 from propmdao.propeller.description import Propeller
+from propmdao.records.air import require_known_air
 from propmdao.records.listening import Listening, Surroundings
 from propmdao.records.models import Model
 from propmdao.records.panels import Panels
@@ -92,6 +93,8 @@ def analyze(
     changed = request.change.applied_to(propeller)
     radius = 0.5 * changed.diameter
     require_outside_rotor(listening.observers, radius)
+    if listening.surroundings.absorption:
+        require_known_air(point.air)
     paths = sound_paths(listening.observers, listening.surroundings)
 
     blade, fidelity = Blade.from_propeller(changed), model.fidelity

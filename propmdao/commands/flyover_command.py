@@ -142,7 +142,8 @@ def _flyover(options: argparse.Namespace) -> None:
     for key in ("observers", "listening"):  # who listens is in the flight
         del result[key]
     result |= {"flight": dataclasses.asdict(flight)} | flyover.to_dict()
-    result |= _write(options, flyover, flight, float(analysis.state.air.sound_speed))
+    nearest = flight.miss_distance / float(analysis.state.air.sound_speed)
+    result |= _write(options, flyover, nearest)
     if options.json:
         print_json(result)
     else:
@@ -151,11 +152,11 @@ def _flyover(options: argparse.Namespace) -> None:
         report.print_flyover(result)
 
 
-def _write(options: argparse.Namespace, heard: Flyover, distance: float) -> dict[str, Any]:
+def _write(options: argparse.Namespace, flyover: Flyover, nearest: float) -> dict[str, Any]:
     """Write the files asked for; what was written."""
     written: dict[str, Any] = {}
     if options.out is not None:
-        rows = heard.to_dict()["history"]
+        rows = flyover.to_dict()["history"]
         try:
             with options.out.open("w", newline="", encoding="utf-8") as stream:
                 writer = csv.DictWriter(stream, rows[0])
@@ -163,23 +164,22 @@ def _write(options: argparse.Namespace, heard: Flyover, distance: float) -> dict
                 writer.writerows({key: f"{x:.4f}" for key, x in row.items()} for row in rows)
         except OSError as error:
             raise ValueError(f"--out {options.out}: {error.strerror or error}") from None
-    if heard.pressure is not None:
+    if flyover.pressure is not None:
         from propmdao.acoustics.sounds.recordings import common_full_scale
         from propmdao.formats.wav import write_wav
 
         full_scale = options.full_scale
         if full_scale is None:
-            full_scale = common_full_scale(heard.pressure)
-        sound = write_wav(options.wav, heard.pressure, full_scale)
+            full_scale = common_full_scale(flyover.pressure)
+        sound = write_wav(options.wav, flyover.pressure, full_scale)
         written["sound"] = sound._asdict() | {"path": str(sound.path)}
     if options.figures is not None:
-        from propmdao.analysis.flyover_results import PARTS, STEP
-        from propmdao.analysis.single_point import SOUND_SPEED
+        from propmdao.analysis.flyover_results import STEP
         from propmdao.figures.histories import level_history
 
         label = f"A-weighted level of {STEP:g} s, dB re 20 µPa"
-        levels = {part: heard.level_dba(part) for part in PARTS}
-        moments = {"heard from the nearest point": distance / SOUND_SPEED}
-        figure = level_history(heard.time, levels, label, moments)
+        levels = {part: flyover.level_dba(part) for part in flyover.mean_square}
+        moments = {"heard from the nearest point": nearest}
+        figure = level_history(flyover.time, levels, label, moments)
         written["figures"] = save_figures(options.figures, {"levels": figure})
     return written

@@ -15,7 +15,8 @@ from propmdao.acoustics.kinematics.reception import Observers
 from propmdao.acoustics.sources.rotors import Rotor, equally_spaced
 from propmdao.commands.program import main
 from propmdao.formats.wopwop.namelists import read_namelists, write_namelists
-from propmdao.formats.wopwop.write_case import write_case
+from propmdao.formats.wopwop.write_case import write_rotor_case
+from propmdao.records.air import Air
 from propmdao.records.loads import PointLoads
 
 OMEGA = 400.0
@@ -30,7 +31,9 @@ def folder(tmp_path: Path) -> Path:
     rotor = Rotor(equally_spaced(2), OMEGA, loads=loads)
     observers = Observers(np.array([[2.0, 0, -1.0], [2.0, 0, 1.0]]), np.zeros(3))
     times = np.arange(64) * 2 * np.pi / OMEGA / 64
-    write_case(tmp_path / "case", [rotor], [None], observers, times, 1.2, 340.0)
+    write_rotor_case(
+        tmp_path / "case", [rotor], [None], observers, times, Air(density=1.2, sound_speed=340.0)
+    )
     return tmp_path / "case"
 
 

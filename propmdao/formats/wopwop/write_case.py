@@ -22,7 +22,7 @@ from propmdao.records.air import Air
 Groups = list[tuple[str, Mapping[str, Any]]]
 
 
-def write_case(
+def write_rotor_case(
     folder: str | Path,
     rotors: Sequence[Rotor],
     surfaces: Sequence[ArrayLike | None],
