@@ -21,7 +21,7 @@ from propmdao.components.drivers.constrained_search import (
     SearchStopped,
 )
 from propmdao.components.drivers.evaluation.candidate import Array, Candidate
-from propmdao.components.drivers.evaluation.design_problem import DesignProblem
+from propmdao.components.drivers.evaluation.design_problem import DesignProblem, require_bounds
 from propmdao.components.drivers.evaluation.model_run import ModelRun, put_outputs
 from propmdao.components.drivers.evaluation.model_runner import (
     ModelRunner,
@@ -145,19 +145,7 @@ class DifferentialEvolutionDriver(Driver):
                 f"{self.msginfo} minimises one scalar objective; the model has {n_objectives}: "
                 f"{', '.join(self._objs)}"
             )
-        for name, meta in self._designvars.items():
-            lower, upper = meta["lower"], meta["upper"]
-            # OpenMDAO keeps None for a bound that was not given; users also write 1e30.
-            if any(bound is None or not np.all(np.abs(bound) < 1e30) for bound in (lower, upper)):
-                need = "finite bounds"
-            elif np.any(np.greater(lower, upper)):
-                need = "lower <= upper"
-            else:
-                continue
-            raise ValueError(
-                f"{self.msginfo} needs {need}; design variable '{name}' has "
-                f"lower={lower}, upper={upper}"
-            )
+        require_bounds(self)
 
     def run(self) -> bool:
         """Search, and leave the Problem at the best design.
@@ -262,9 +250,9 @@ class DifferentialEvolutionDriver(Driver):
         designs = [self._design_problem.at_position(position) for position in positions]
         entries = self._checkpoint.replay(designs) if self._checkpoint else []
         replayed, new = designs[: len(entries)], designs[len(entries) :]
-        runs_then = self._replay(replayed, entries)
+        replays = self._replay(replayed, entries)
         for design in replayed:
-            yield self._next_case(design, runs_then)
+            yield self._next_case(design, replays)
         with contextlib.closing(self._runner.run(map(self._design_problem.start_at, new))) as runs:
             for design in new:
                 if time.monotonic() > self._deadline and self.iter_count > 0:

@@ -142,6 +142,34 @@ class DesignProblem:
         return list(dict.fromkeys(meta["source"] for meta in metas))
 
 
+def require_bounds(driver: Driver) -> None:
+    """Refuse a driver whose design variables have no finite bounds.
+
+    Parameters
+    ----------
+    driver : Driver
+        Driver that has been set up.
+
+    Raises
+    ------
+    ValueError
+        When a bound is missing or infinite, or the lower one is above the upper one.
+    """
+    for name, meta in driver._designvars.items():
+        lower, upper = meta["lower"], meta["upper"]
+        # OpenMDAO keeps None for a bound that was not given; users also write 1e30.
+        if any(bound is None or not np.all(np.abs(bound) < 1e30) for bound in (lower, upper)):
+            need = "finite bounds"
+        elif np.any(np.greater(lower, upper)):
+            need = "lower <= upper"
+        else:
+            continue
+        raise ValueError(
+            f"{driver.msginfo} needs {need}; design variable '{name}' has "
+            f"lower={lower}, upper={upper}"
+        )
+
+
 def _described(metas: dict[str, Any], bounds: tuple[str, ...]) -> dict[str, Any]:
     """Names, sizes, units, scaling and bounds of design variables or responses."""
     keys = ("size", "units", "total_scaler", "total_adder", *bounds)
