@@ -69,7 +69,7 @@ load_force, section_speed, section_lift_coefficient
         self.constants = self.constants, given_bounds(self.options)
         self.search, self.function = _trimmed, _at_root
         self.state, self.residual = "rotation_speed", "missing_thrust"
-        self.of_state = {"rpm": 1.0 / RAD_PER_S}
+        self.state_outputs = {"rpm": 1.0 / RAD_PER_S}
 
     def _add_rotation_speed(self) -> None:
         self.add_point_input("thrust_required", val=1.0, units="N")

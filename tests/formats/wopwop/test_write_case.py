@@ -9,7 +9,6 @@ import jax.numpy as jnp
 import numpy as np
 import pytest
 
-from propmdao.records.air import Air
 from propmdao.acoustics.kinematics.motion import poses, rotation, translation
 from propmdao.acoustics.kinematics.observers import arc
 from propmdao.acoustics.kinematics.reception import Observers
@@ -29,9 +28,10 @@ from propmdao.geometry.surface import (
     surface_nodes,
     surface_panels,
 )
+from propmdao.records.air import Air
 from propmdao.records.loads import PointLoads
 
-Air(density=RHO, sound_speed=C), OMEGA = 1.2, 340.0, 1200.0
+AIR, OMEGA = Air(density=1.2, sound_speed=340.0), 1200.0
 
 
 @pytest.fixture(scope="module")
@@ -98,12 +98,12 @@ def test_the_line_gives_back_every_force(nodes, loads):
 def written_and_run(folder, rotors, surfaces, velocity=(0.0, 0.0, 0.0), flight=(), n=128):
     observers = Observers(jnp.asarray(arc(1.5, [-40.0, 15.0])), jnp.asarray(velocity, float))
     times = np.arange(n) * 2 * np.pi / OMEGA / n
-    write_rotor_case(folder, rotors, surfaces, observers, times, Air(density=RHO, sound_speed=C), flight)
+    write_rotor_case(folder, rotors, surfaces, observers, times, AIR, flight)
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         results = run_case(folder)
     assert [result.observers for result in results] == ["observer 1", "observer 2"]
-    own = rotor_histories(rotors, observers, times, Air(density=RHO, sound_speed=C), flight)
+    own = rotor_histories(rotors, observers, times, AIR, flight)
     for i, result in enumerate(results):
         np.testing.assert_allclose(result.pressure.time[0], times, atol=1e-12)
         np.testing.assert_allclose(result.pressure.position[0, 0], observers.position[i])
@@ -154,14 +154,14 @@ def test_what_cannot_be_written(tmp_path, rotor, nodes):
     listeners = Observers(jnp.ones((1, 3)), jnp.zeros(3))
     t = np.linspace(0, 1, 9)
     with pytest.raises(ValueError, match="must have a surface or loads"):
-        write_rotor_case(tmp_path, [nothing], [None], listeners, t, Air(density=RHO, sound_speed=C))
+        write_rotor_case(tmp_path, [nothing], [None], listeners, t, AIR)
     file = tmp_path / "file"
     file.write_text("")
     with pytest.raises(ValueError, match="file: File exists"):
-        write_rotor_case(file, [rotor], [nodes], listeners, t, Air(density=RHO, sound_speed=C))
+        write_rotor_case(file, [rotor], [nodes], listeners, t, AIR)
     one = PointLoads(jnp.ones((1, 3)), jnp.ones((1, 3)))
     with pytest.raises(ValueError, match="must act at 2 or more points"):
-        write_rotor_case(tmp_path, [Rotor([0.0], OMEGA, loads=one)], [None], listeners, t, Air(density=RHO, sound_speed=C))
+        write_rotor_case(tmp_path, [Rotor([0.0], OMEGA, loads=one)], [None], listeners, t, AIR)
 
 
 def test_a_swinging_frame_is_written_and_read_again(tmp_path, loads):
@@ -173,7 +173,7 @@ def test_a_swinging_frame_is_written_and_read_again(tmp_path, loads):
     rotor = Rotor(equally_spaced(2), OMEGA, loads=loads)
     observers = Observers(jnp.array([[9.0, 0, 0]]), jnp.zeros(3))
     folder, times = tmp_path / "case", np.linspace(0.0, 0.1, 9)
-    write_rotor_case(folder, [rotor], [None], observers, times, Air(density=RHO, sound_speed=C), outer)
+    write_rotor_case(folder, [rotor], [None], observers, times, AIR, outer)
     assert "periodic" in (folder / "case.nam").read_text().lower()
     with warnings.catch_warnings():
         warnings.simplefilter("error")
@@ -185,4 +185,4 @@ def test_a_swinging_frame_is_written_and_read_again(tmp_path, loads):
     np.testing.assert_allclose(read.origin, expected.origin, atol=1e-12)
     both = rotation((0, 1, 0), rate=1.0, swing=[[0.1], [0.0]], swing_rate=2.0)
     with pytest.raises(ValueError, match="takes two of PSU-WOPWOP's changes of base"):
-        write_rotor_case(folder, [rotor], [None], observers, times, Air(density=RHO, sound_speed=C), (both,))
+        write_rotor_case(folder, [rotor], [None], observers, times, AIR, (both,))
