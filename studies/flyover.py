@@ -1,4 +1,4 @@
-"""What is heard on the ground when a propeller flies over: levels against time, SEL and EPNL.
+"""Sound on the ground when a propeller flies over: levels against time, SEL and EPNL.
 
 The propeller of a small aircraft in level flight, its axis along the path, over a microphone flush
 with hard ground. Tones come as a pressure record with its Doppler shift, broadband noise in third
@@ -33,15 +33,15 @@ ARC = np.linspace(-90.0, 90.0, 37)  # deg
 TRIPPED = "total, tripped"
 
 
-def hemisphere(found: Analysis) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def hemisphere(analysis: Analysis) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Elevations, azimuths from the nose [deg] and levels below the aircraft, flying along [dB]."""
-    assert found.broadband is not None
-    heard = acoustic_plots.Heard(found.tones, BANDS_HZ, np.asarray(found.broadband.total))
+    assert analysis.broadband is not None
+    sound = acoustic_plots.Heard(analysis.tones, BANDS_HZ, np.asarray(analysis.broadband.total))
     elevation, azimuth = np.linspace(-90.0, 0.0, 31), np.linspace(0.0, 360.0, 73)
     axes = np.asarray(poses(TRACK, np.zeros(1)).rotation)[0]
-    seen = directions(sphere(FLIGHT.height, elevation, azimuth) @ axes)
-    # In axial flight it is the same all around the rotor's axis.
-    level = np.interp(seen.elevation_deg, ARC, acoustic_plots.source_levels(heard)["total"])
+    direction = directions(sphere(FLIGHT.height, elevation, azimuth) @ axes)
+    # In axial flight the sound is the same all around the rotor's axis.
+    level = np.interp(direction.elevation_deg, ARC, acoustic_plots.source_levels(sound)["total"])
     return elevation, azimuth, level.reshape(elevation.size, azimuth.size)
 
 
@@ -53,29 +53,29 @@ def main() -> None:
     output = parser.parse_args().output.absolute()
     output.mkdir(parents=True, exist_ok=True)
 
-    found = analyze(PROPELLER, thrust=THRUST, speed=SPEED, density=DENSITY, broadband=True,
-                    observers=[(FLIGHT.height, angle) for angle in ARC])  # fmt: skip
-    heard = fly_over(PROPELLER, found, FLIGHT)
-    tripped = fly_over(PROPELLER, found, FLIGHT, trip="heavy")
-    levels = {part: heard.level_dba(part) for part in PARTS} | {TRIPPED: tripped.level_dba()}
+    analysis = analyze(PROPELLER, thrust=THRUST, speed=SPEED, density=DENSITY, broadband=True,
+                       observers=[(FLIGHT.height, angle) for angle in ARC])  # fmt: skip
+    untripped = fly_over(PROPELLER, analysis, FLIGHT)
+    tripped = fly_over(PROPELLER, analysis, FLIGHT, trip="heavy")
+    levels = {part: untripped.level_dba(part) for part in PARTS} | {TRIPPED: tripped.level_dba()}
     with (output / "levels_dba.csv").open("w", newline="", encoding="utf-8") as stream:
         writer = csv.writer(stream)
         writer.writerow(["time_s", *levels])
-        for row in zip(heard.time, *levels.values(), strict=True):
+        for row in zip(untripped.time, *levels.values(), strict=True):
             writer.writerow([f"{value:.2f}" for value in row])
-    print(f"{PROPELLER.name} at {found.rpm:.0f} rpm, {SPEED:g} m/s, {FLIGHT.height:g} m above the "
-          "ground:")  # fmt: skip
-    for name, flyover in (("total", heard), (TRIPPED, tripped)):
+    print(f"{PROPELLER.name} at {analysis.rpm:.0f} rpm, {SPEED:g} m/s, {FLIGHT.height:g} m above "
+          "the ground:")  # fmt: skip
+    for name, flyover in (("total", untripped), (TRIPPED, tripped)):
         summary = flyover.to_dict()
         level = summary["levels"]["total"]
         print(f"{name}: LAmax {level['lamax_dba']:.1f} dBA, SEL {level['sel_dba']:.1f} dBA, "
               f"EPNL {summary['epnl']:.1f} EPNdB")  # fmt: skip
     acoustic_plots.level_history(
-        heard.time, levels, f"A-weighted level of {STEP:g} s, dB re 20 µPa",
+        untripped.time, levels, f"A-weighted level of {STEP:g} s, dB re 20 µPa",
         {"heard from overhead": FLIGHT.miss_distance / SOUND_SPEED},
     ).savefig(output / "levels.png")  # fmt: skip
     directivity.hemisphere_map(
-        *hemisphere(found), f"OASPL at {FLIGHT.height:g} m, dB re 20 µPa; azimuth from the nose"
+        *hemisphere(analysis), f"OASPL at {FLIGHT.height:g} m, dB re 20 µPa; azimuth from the nose"
     ).savefig(output / "hemisphere.png")
     print(f"Levels and figures: {output}")
 
