@@ -36,13 +36,13 @@ def results() -> gradient_design.Results:
     """Blades, searches and contributions of the study, its figures written."""
     output = ROOT / "results" / "gradient_design"
     output.mkdir(parents=True, exist_ok=True)
-    found = gradient_design.design(output, EVALUATIONS)
-    gradient_design.draw(found, output)
-    return found
+    designs = gradient_design.design(output, EVALUATIONS)
+    gradient_design.draw(designs, output)
+    return designs
 
 
 def targets() -> Rows:
-    """What is aimed at in searches by gradients, and what is measured."""
+    """Targets of searches by gradients, and what is measured."""
     searches = results().searches
     slsqp, evolved = (searches[name] for name in ("thesis' problem", "evolution"))
     louder = slsqp.history.objective[-1] - evolved.history.objective[-1]
@@ -71,7 +71,7 @@ def targets() -> Rows:
 
 
 def thesis_problem() -> Rows:
-    """How the thesis' problem is solved by SLSQP, differential evolution and both."""
+    """Cost of solving the thesis' problem by SLSQP, differential evolution and both."""
     return gradient_design.cost(
         {label: results().searches[name] for name, label in OF_THE_THESIS.items()}
     )
@@ -83,13 +83,13 @@ def free_form() -> Rows:
 
 
 def free_form_cost() -> Rows:
-    """How the free-form blades were found."""
-    every = results().searches
-    return gradient_design.cost({k: of for k, of in every.items() if k not in OF_THE_THESIS})
+    """Cost of the searches for the free-form blades."""
+    searches = results().searches.items()
+    return gradient_design.cost({k: search for k, search in searches if k not in OF_THE_THESIS})
 
 
 def contributions(name: str) -> Rows:
-    """What each kind of variable brings to a free-form blade."""
+    """Contribution of each kind of variable to a free-form blade."""
     return results().contributions[name]
 
 
@@ -98,7 +98,7 @@ def smoothness() -> Rows:
     return smooth_objectives.rows(*smooth_objectives.survey())
 
 
-#: By the names that stand in docs/verification.md.
+#: Tables by the names that stand in docs/verification.md.
 TABLES: dict[str, Callable[[], Rows]] = {
     "gradient targets": targets,
     "gradient thesis": thesis_problem,

@@ -29,12 +29,9 @@ from propmdao.analysis.single_point import SOUND_SPEED, analyze
 from propmdao.analysis.wind_tunnel import Points, calibrated_twist_deg, computed
 from propmdao.formats.propellers import load_propeller
 from propmdao.geometry.blade import Blade
-from propmdao.geometry.lattice import (
-    lattice_interpolation,
-    lattice_nodes,
-    strip_interpolation,
-)
+from propmdao.geometry.lattice import lattice_interpolation, lattice_nodes, strip_interpolation
 from propmdao.propeller.description import Propeller
+from propmdao.records.units import RAD_PER_S
 
 HERE = Path(__file__).parent
 sys.path.insert(0, str(HERE.parent / "studies"))
@@ -46,7 +43,6 @@ import wake_transport as wake_study  # noqa: E402
 
 SLOW_FLYER = load_propeller("apcsf_11x4.7")
 RADIUS, DENSITY = 0.1397, 1.225
-RAD_PER_S = np.pi / 30.0
 DEG = np.pi / 180.0
 
 
@@ -63,21 +59,21 @@ def solve(speed: float, n_chordwise: int = 8, n_spanwise: int = 24, ages: np.nda
 
 
 def targets() -> Rows:
-    """What is aimed at for APC-SF 11x4.7, and what is measured."""
+    """Targets for APC-SF 11x4.7, and what is measured."""
     study = aerodynamic_validation
     columns = study.compare("apcsf_11x4.7", study.measurements("apcsf_11x4.7"))
     rows: Rows = [("APC-SF 11x4.7", "target", "measured", "")]
     for column in columns:
-        found = study.mean_errors(column.errors) | {"trend": column.errors.trend}
+        errors = study.mean_errors(column.errors) | {"trend": column.errors.trend}
         for name, target in study.TARGETS[column.name].items():
             unit = "" if name == "trend" else " %"
-            met = found[name] >= target if name == "trend" else found[name] <= target
-            measured = f"{found[name]:.2f}" if name == "trend" else f"{found[name]:.1f}{unit}"
+            met = errors[name] >= target if name == "trend" else errors[name] <= target
+            measured = f"{errors[name]:.2f}" if name == "trend" else f"{errors[name]:.1f}{unit}"
             rows.append(
                 (f"{column.name}: {name}", f"{target:g}{unit}", measured, _verdict(met))
             )  # fmt: skip
-    heard = hover_noise_study.hover_tones()
-    error = np.abs(heard.spl_db - heard.measured_db)
+    levels = hover_noise_study.hover_tones()
+    error = np.abs(levels.spl_db - levels.measured_db)
     for label, value, target in (("mean", error.mean(), 1.0), ("largest", error.max(), 2.0)):
         name = f"hover, level at blade passage: {label} error"
         rows.append((name, f"{target:g} dB", f"{value:.1f} dB", _verdict(value <= target)))
@@ -136,11 +132,11 @@ def ideal_disk() -> Rows:
         cells = []
         for viscous in (False, True):
             speed = j * 4003 / 60.0 * SLOW_FLYER.diameter
-            of = analyze(SLOW_FLYER, rpm=4003.0, speed=speed, viscous=viscous).to_dict()
+            result = analyze(SLOW_FLYER, rpm=4003.0, speed=speed, viscous=viscous).to_dict()
             disk = 2.0 * DENSITY * np.pi * RADIUS**2
-            w = -0.5 * speed + np.sqrt(0.25 * speed**2 + of["thrust"] / disk)
-            ideal = of["thrust"] * (speed + w)
-            cells += [f"{of['CT']:.4f}", f"{of['shaft_power'] / ideal:.3f}"]
+            w = -0.5 * speed + np.sqrt(0.25 * speed**2 + result["thrust"] / disk)
+            ideal = result["thrust"] * (speed + w)
+            cells += [f"{result['CT']:.4f}", f"{result['shaft_power'] / ideal:.3f}"]
         rows.append((f"{j:.1f}", *cells))
     return rows
 
@@ -148,10 +144,10 @@ def ideal_disk() -> Rows:
 def summary() -> Rows:
     """Mean errors of the three propellers, published and calibrated."""
     study = aerodynamic_validation
-    every = [
+    columns = [
         column for case in study.CASES for column in study.compare(case, study.measurements(case))
     ]
-    return _formatted(study.summary(every), study.FORMATS | {"not converged": "d"})
+    return _formatted(study.summary(columns), study.FORMATS | {"not converged": "d"})
 
 
 def _formatted(table: list[dict], formats: dict[str, str]) -> Rows:
@@ -178,15 +174,15 @@ def run_4003() -> Rows:
         "thesis' sections": thesis,
     }  # fmt: skip
     names = ("CT", "CP")
-    rows: Rows = [("J", *(f"{what} {by}" for what in names for by in columns))]
+    rows: Rows = [("J", *(f"{name} {origin}" for name in names for origin in columns))]
     for i, j in enumerate(run.J):
-        cells = (f"{getattr(of, what)[i]:.4f}" for what in names for of in columns.values())
+        cells = (f"{getattr(p, name)[i]:.4f}" for name in names for p in columns.values())
         rows.append((f"{j:.3f}", *cells))
     return rows
 
 
 def sensitivity(case: str) -> Rows:
-    """What the errors of a propeller depend on."""
+    """Errors of a propeller with one thing changed at a time."""
     study = aerodynamic_sensitivity
     if not study.neuralfoil_tables.neuralfoil_installed():
         raise SystemExit("n_crit takes NeuralFoil: pip install 'propmdao[polars]'")
@@ -267,22 +263,22 @@ def main() -> None:
         help=f"some of: {', '.join(TABLES)}; or what several begin with; default all",
     )
     names = []
-    for asked in parser.parse_args().tables or [""]:
-        chosen = [asked] if asked in TABLES else [name for name in TABLES if name.startswith(asked)]
-        if not chosen:
-            parser.error(f"no table {asked!r}; there are: {', '.join(TABLES)}")
-        names += chosen
+    for start in parser.parse_args().tables or [""]:
+        begun = [start] if start in TABLES else [name for name in TABLES if name.startswith(start)]
+        if not begun:
+            parser.error(f"no table {start!r}; there are: {', '.join(TABLES)}")
+        names += begun
     page = HERE / "verification.md"
     for name in names:
         begin, end = f"<!-- table: {name} -->", "<!-- end of table -->"
         pattern = re.compile(f"({re.escape(begin)}\n).*?({end})", re.DOTALL)
         text = markdown(TABLES[name]())
-        written, n = pattern.subn(
+        new_page, n = pattern.subn(
             lambda m, t=text: f"{m[1]}{t}{m[2]}", page.read_text(encoding="utf-8")
         )
         if n != 1:
             raise SystemExit(f"{page.name} must have the table {name!r} once; it has it {n} times")
-        page.write_text(written, encoding="utf-8")
+        page.write_text(new_page, encoding="utf-8")
         print(f"{name}: written", flush=True)
 
 

@@ -51,9 +51,9 @@ MOTOR = 2000.0  # Hz, below which the motor's tones stand out of all that was he
 
 
 class Comparison(NamedTuple):
-    """Computed and measured, at one rotation speed and microphone."""
+    """Computed and measured levels at one rotation speed and microphone; noise: total or part."""
 
-    what: str
+    noise: str
     rpm: int
     elevation_deg: float
     frequency_hz: np.ndarray
@@ -62,17 +62,17 @@ class Comparison(NamedTuple):
 
     @property
     def error_db(self) -> np.ndarray:
-        """Computed less measured."""
+        """Computed less measured level."""
         return self.computed_db - self.measured_db
 
     def within(self, low_hz: float, high_hz: float = BANDS[1]) -> np.ndarray:
-        """Errors in the bands from one to another, both included."""
-        chosen = (self.frequency_hz > low_hz / 1.03) & (self.frequency_hz < high_hz * 1.03)
-        return self.error_db[chosen]
+        """Errors in the bands between two frequencies, both included."""
+        inside = (self.frequency_hz > low_hz / 1.03) & (self.frequency_hz < high_hz * 1.03)
+        return self.error_db[inside]
 
 
 class Hover(NamedTuple):
-    """Computed at one rotation speed: at the microphones, then on the arc."""
+    """Analysis at one rotation speed: observers at the microphones, then on the arc."""
 
     analysis: Analysis
     elevation_deg: np.ndarray
@@ -84,11 +84,11 @@ class Hover(NamedTuple):
         return analysis_sound(self.analysis)
 
     def observer(self, elevation_deg: float) -> int:
-        """Which one hears at an elevation."""
+        """Index of the first observer at an elevation."""
         return int(np.flatnonzero(self.elevation_deg == elevation_deg)[0])
 
     def on_arc(self, level: np.ndarray) -> np.ndarray:
-        """Leave the microphones out."""
+        """Leave the microphones' levels out."""
         return level[self.n_microphones :]
 
 
@@ -97,33 +97,33 @@ def hover(rpm: float, test: Mapping[str, Any], arc_deg: np.ndarray) -> Hover:
     microphones = test["blade_passage"]["elevation_deg"]
     elevation = np.array([*microphones, *arc_deg])
     points = [(test["radius"], angle) for angle in elevation]
-    found = analyze(
+    analysis = analyze(
         load_propeller(PROPELLER), rpm=rpm, density=DENSITY, broadband=True, observers=points
     )
-    return Hover(found, elevation, len(microphones))
+    return Hover(analysis, elevation, len(microphones))
 
 
-def tone_errors(computed: Mapping[int, Hover], test: Mapping[str, Any]) -> list[list[str]]:
+def tone_errors(hovers: Mapping[int, Hover], test: Mapping[str, Any]) -> list[list[str]]:
     """Table 4.7: errors at blade passage, ours and the thesis', the mean sizes at the end."""
     passage = test["blade_passage"]
     head = ["elevation, deg"]
-    for rpm in computed:
+    for rpm in hovers:
         head += [f"{rpm} rpm, measured", f"{rpm} rpm, computed", f"{rpm} rpm, error",
                  f"{rpm} rpm, size in thesis"]  # fmt: skip
     table = [head]
     ours, theirs = [], []
     for k, angle in enumerate(passage["elevation_deg"]):
         row = [f"{angle:+.1f}"]
-        for rpm, at in computed.items():
+        for rpm, hovering in hovers.items():
             i = passage["rpm"].index(rpm)
-            known, thesis = passage["spl_db"][i][k], test["thesis"]["absolute_error_db"][i][k]
-            level = float(spl_db(at.analysis.tones.total[k, 0]))
-            ours.append(abs(level - known))
+            measured, thesis = passage["spl_db"][i][k], test["thesis"]["absolute_error_db"][i][k]
+            level = float(spl_db(hovering.analysis.tones.total[k, 0]))
+            ours.append(abs(level - measured))
             theirs.append(thesis)
-            row += [f"{known:.2f}", f"{level:.2f}", f"{level - known:+.2f}", f"{thesis:.2f}"]
+            row += [f"{measured:.2f}", f"{level:.2f}", f"{level - measured:+.2f}", f"{thesis:.2f}"]
         table.append(row)
-    sizes = np.reshape(ours, (-1, len(computed))).mean(axis=0)
-    reported = np.reshape(theirs, (-1, len(computed))).mean(axis=0)
+    sizes = np.reshape(ours, (-1, len(hovers))).mean(axis=0)
+    reported = np.reshape(theirs, (-1, len(hovers))).mean(axis=0)
     mean = ["mean size"]
     for size, thesis in zip(sizes, reported, strict=True):
         mean += ["", "", f"{size:.2f}", f"{thesis:.2f}"]
@@ -143,39 +143,39 @@ def band_comparisons(computed: Mapping[int, Hover], test: Mapping[str, Any]) -> 
             # Nominal frequencies and exact ones have the same number.
             number, ours = (np.round(10 * np.log10(f / 1000)) for f in (nominal, BANDS_HZ))
             _, here, there = np.intersect1d(number, ours, return_indices=True)
-            found.append(
-                Comparison(what, known["rpm"], angle, nominal[here],
+            comparisons.append(
+                Comparison(noise, spectrum["rpm"], angle, nominal[here],
                            np.asarray(level)[there], spl[here])
             )  # fmt: skip
-    return found
+    return comparisons
 
 
 def verdicts(tones: Sequence[Sequence[str]], bands: Iterable[Comparison]) -> list[str]:
-    """What was aimed at, what was reached."""
+    """Say what was aimed at and what was reached."""
     sizes = [float(cell) for cell in tones[-1][3::4]]
     lines = [
         _verdict(
             "tone at blade passage, mean absolute error", float(np.mean(sizes)), TARGET_TONE_DB
         )
     ]
-    for one in bands:
-        at = f"{one.rpm} rpm, {one.elevation_deg:+.1f} deg"
-        if one.what == "broadband":
-            error = one.within(*BANDS)
-            name = f"broadband third octaves 500 Hz to 10 kHz, {at}, mean absolute error"
+    for comparison in bands:
+        place = f"{comparison.rpm} rpm, {comparison.elevation_deg:+.1f} deg"
+        if comparison.noise == "broadband":
+            error = comparison.within(*BANDS)
+            name = f"broadband third octaves 500 Hz to 10 kHz, {place}, mean absolute error"
             lines.append(_verdict(name, float(np.abs(error).mean()), TARGET_BAND_DB))
         else:
-            with_motor, without = one.within(*BANDS), one.within(1.1 * MOTOR)
+            with_motor, without = comparison.within(*BANDS), comparison.within(1.1 * MOTOR)
             lines.append(
-                f"all that was heard, the motor with it, {at}: third octaves 500 Hz to 10 kHz "
+                f"all that was heard, the motor with it, {place}: third octaves 500 Hz to 10 kHz "
                 f"{with_motor.mean():+.1f} dB on average, 2.5 to 10 kHz {without.mean():+.1f} dB"
             )
     return lines
 
 
-def _verdict(what: str, size: float, target: float) -> str:
+def _verdict(name: str, size: float, target: float) -> str:
     verdict = "met" if size <= target else f"MISSED by {size - target:.2f} dB"
-    return f"{what}: {size:.2f} dB, target {target:.1f} dB: {verdict}"
+    return f"{name}: {size:.2f} dB, target {target:.1f} dB: {verdict}"
 
 
 def records(sound: Sound, observer: int) -> dict[str, np.ndarray]:
@@ -187,14 +187,14 @@ def records(sound: Sound, observer: int) -> dict[str, np.ndarray]:
 
 def two_blades(thrust: float, distance: float, output: Path) -> dict[str, dict[str, np.ndarray]]:
     """Write the sound of two propellers of the same thrust, with one full scale."""
-    blades, found = {}, {}
+    blades, analyses = {}, {}
     for name in (PROPELLER, OTHER):
         analysis = analyze(load_propeller(name), thrust=thrust, density=DENSITY, broadband=True,
                            observers=arc(distance, [MICROPHONE]))  # fmt: skip
         found[name] = analysis
         blades[f"{name}, {analysis.rpm:.0f} rpm"] = records(analysis_sound(analysis), 0)
     full = common_full_scale(*(sound["with broadband noise"] for sound in blades.values()))
-    for (name, analysis), sound in zip(found.items(), blades.values(), strict=True):
+    for (name, analysis), sound in zip(analyses.items(), blades.values(), strict=True):
         file = write_wav(output / f"{name}.wav", sound["with broadband noise"], full)
         level = source_levels(analysis_sound(analysis))
         print(f"{file.path.name}: {thrust:.2f} N at {analysis.rpm:.0f} rpm, "
@@ -202,10 +202,10 @@ def two_blades(thrust: float, distance: float, output: Path) -> dict[str, dict[s
     return blades
 
 
-def draw(computed: Mapping[int, Hover], bands: Sequence[Comparison], test: Mapping[str, Any],
+def draw(hovers: Mapping[int, Hover], bands: Sequence[Comparison], test: Mapping[str, Any],
          output: Path) -> None:  # fmt: skip
-    """Figures 4.12 to 4.15 of the thesis."""
-    shown = computed[RPM]
+    """Draw figures 4.12 to 4.15 of the thesis."""
+    shown = hovers[RPM]
     arc = shown.on_arc(shown.elevation_deg)
     names = {rpm: f"{rpm} rpm" for rpm in computed}
     at = shown.observer(MICROPHONE)
@@ -247,10 +247,12 @@ def write(output: Path, tones: Iterable[Sequence[str]], bands: Iterable[Comparis
         writer = csv.writer(stream)
         writer.writerow(["noise", "rpm", "elevation_deg", "frequency_hz", "measured_db",
                          "computed_db", "error_db"])  # fmt: skip
-        for one in bands:
-            for f, known, level in zip(*one[3:4], one.measured_db, one.computed_db, strict=True):
-                writer.writerow([*one[:3], f"{f:g}", f"{known:.1f}", f"{level:.2f}",
-                                 f"{level - known:+.2f}"])  # fmt: skip
+        for comparison in bands:
+            for f, measured, level in zip(
+                comparison.frequency_hz, comparison.measured_db, comparison.computed_db, strict=True
+            ):
+                writer.writerow([*comparison[:3], f"{f:g}", f"{measured:.1f}", f"{level:.2f}",
+                                 f"{level - measured:+.2f}"])  # fmt: skip
 
 
 def main() -> None:
@@ -266,14 +268,14 @@ def main() -> None:
     test: dict[str, Any] = tomllib.loads(MEASURED.read_text(encoding="utf-8"))
     speeds = [RPM] if options.quick else test["blade_passage"]["rpm"]
     arc = np.linspace(-90.0, 90.0, 13 if options.quick else 73)
-    computed = {rpm: hover(rpm, test, arc) for rpm in speeds}
-    tones, bands = tone_errors(computed, test), band_comparisons(computed, test)
+    hovers = {rpm: hover(rpm, test, arc) for rpm in speeds}
+    tones, bands = tone_errors(hovers, test), band_comparisons(hovers, test)
     write(output, tones, bands)
     print("Errors of the SPL at blade passage, and sizes of those of the thesis, dB")
-    chosen = [k for k in range(len(tones[0])) if k == 0 or k % 4 in (3, 0)]
-    table = Table(*(tones[0][k] for k in chosen), box=None, padding=(0, 1, 0, 0))
+    columns = [k for k in range(len(tones[0])) if k == 0 or k % 4 in (3, 0)]
+    table = Table(*(tones[0][k] for k in columns), box=None, padding=(0, 1, 0, 0))
     for row in tones[1:]:
-        table.add_row(*(row[k] for k in chosen))
+        table.add_row(*(row[k] for k in columns))
     Console(highlight=False).print(table)
     print(*verdicts(tones, bands), sep="\n")
     draw(computed, bands, test, output)

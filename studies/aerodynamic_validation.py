@@ -31,7 +31,7 @@ from propmdao.figures import comparisons
 from propmdao.formats.propellers import load_propeller
 
 MEASUREMENTS = Path(__file__).parent / "measurements"
-# Propeller of the catalogue and who measured it.
+# Propellers of the catalogue, and the files of their measurements.
 CASES = {
     "apcsf_11x4.7": "uiuc_apcsf_11x4.7",
     "apcsf_11x4.7_thesis": "uiuc_apcsf_11x4.7",
@@ -57,13 +57,13 @@ class Column:
     Attributes
     ----------
     propeller, name : str
-        Catalogue entry; `PUBLISHED` or `CALIBRATED`.
+        Propeller's name in the catalogue, and `PUBLISHED` or `CALIBRATED`.
     twist_deg : float
         Offset to the blade angle [deg].
     static, dynamic : Points
-        Computed.
+        Computed points without and with flight speed.
     errors : Errors
-        Against the measurements.
+        Differences from the measurements.
     """
 
     propeller: str
@@ -75,7 +75,7 @@ class Column:
 
 
 def measurements(case: str, quick: bool = False) -> WindTunnel:
-    """Measurements of a case, or few of them."""
+    """Read the measurements of a case, or, to be quick, a few of them."""
     tunnel = read_wind_tunnel(MEASUREMENTS / f"{CASES[case]}.toml")
     if not quick:
         return tunnel
@@ -83,27 +83,30 @@ def measurements(case: str, quick: bool = False) -> WindTunnel:
 
 
 def compare(case: str, tunnel: WindTunnel) -> list[Column]:
-    """Published and calibrated geometry against the wind tunnel."""
+    """Compute the published and the calibrated geometry at the points of the wind tunnel."""
     propeller = load_propeller(case)
     columns = []
     for name in (PUBLISHED, CALIBRATED):
         twist = calibrated_twist_deg(propeller, tunnel.static) if name == CALIBRATED else 0.0
-        still, moving = (computed(propeller, at, twist) for at in (tunnel.static, tunnel.dynamic))
+        still, moving = (
+            computed(propeller, points, twist) for points in (tunnel.static, tunnel.dynamic)
+        )
         columns.append(Column(case, name, twist, still, moving, errors(tunnel, still, moving)))
     return columns
 
 
-def mean_errors(found: Errors) -> dict[str, float]:
+def mean_errors(difference: Errors) -> dict[str, float]:
     """Mean absolute errors and mean errors in per cent; points not converged are left out."""
-    arrays = (found.static_ct, found.static_cp, found.low_ct, found.low_cp, found.high_ct,
-              found.high_cp)  # fmt: skip
+    arrays = (difference.static_ct, difference.static_cp, difference.low_ct, difference.low_cp,
+              difference.high_ct, difference.high_cp)  # fmt: skip
     named = dict(zip(ERRORS, arrays, strict=True))
-    sizes = {name: 100.0 * float(np.nanmean(np.abs(of))) for name, of in named.items()}
-    return sizes | {f"{name}, mean": 100.0 * float(np.nanmean(of)) for name, of in named.items()}
+    sizes = {name: 100.0 * float(np.nanmean(np.abs(values))) for name, values in named.items()}
+    means = {f"{name}, mean": 100.0 * float(np.nanmean(values)) for name, values in named.items()}
+    return sizes | means
 
 
 def summary(columns: Iterable[Column]) -> list[dict[str, str | float]]:
-    """Table of errors, and at its end what is aimed at."""
+    """Tabulate the errors, and at the end the targets."""
     rows: list[dict[str, str | float]] = [
         {
             "propeller": column.propeller,
@@ -111,7 +114,9 @@ def summary(columns: Iterable[Column]) -> list[dict[str, str | float]]:
             "twist": column.twist_deg,
             **mean_errors(column.errors),
             "trend": column.errors.trend,
-            "not converged": sum(np.isnan(of.CT).sum() for of in (column.static, column.dynamic)),
+            "not converged": sum(
+                np.isnan(points.CT).sum() for points in (column.static, column.dynamic)
+            ),
         }
         for column in columns
     ]
@@ -146,12 +151,15 @@ def write_points(file: Path, tunnel: WindTunnel, columns: Sequence[Column]) -> N
     """Write every measured point with what was computed there."""
     rows: list[dict[str, object]] = []
     for part in ("static", "dynamic"):
-        at = getattr(tunnel, part)
-        for i, (rpm, j) in enumerate(zip(at.rpm, at.J, strict=True)):
+        points = {"measured": getattr(tunnel, part)}
+        points |= {column.name: getattr(column, part) for column in columns}
+        for i, (rpm, j) in enumerate(
+            zip(points["measured"].rpm, points["measured"].J, strict=True)
+        ):
             rows.append({"rpm": rpm, "J": j})
-            for by, of in (("measured", tunnel), *((column.name, column) for column in columns)):
-                for what in ("CT", "CP", "eta"):
-                    rows[-1][f"{what} {by}"] = getattr(getattr(of, part), what)[i]
+            for origin, values in points.items():
+                for quantity in ("CT", "CP", "eta"):
+                    rows[-1][f"{quantity} {origin}"] = getattr(values, quantity)[i]
     write_csv(file, rows)
 
 
@@ -165,11 +173,11 @@ def main() -> None:
     output = options.output.absolute()
     output.mkdir(parents=True, exist_ok=True)
 
-    every: list[Column] = []
+    all_columns: list[Column] = []
     for case in CASES:
         tunnel = measurements(case, options.quick)
         columns = compare(case, tunnel)
-        every += columns
+        all_columns += columns
         write_points(output / f"{case}.csv", tunnel, columns)
         names = [f"{case}, {column.name} ({column.twist_deg:+.2f} deg)" for column in columns]
         moving = {name: column.dynamic for name, column in zip(names, columns, strict=True)}
@@ -177,7 +185,7 @@ def main() -> None:
         still = {name: column.static for name, column in zip(names, columns, strict=True)}
         figure = comparisons.static_performance(tunnel.static, still)
         figure.savefig(output / f"{case}_static.png")
-    table = summary(every)
+    table = summary(all_columns)
     write_csv(output / "summary.csv", table)
     # 80 characters have no room for the points beyond J 0.5.
     show(table, {name: form for name, form in FORMATS.items() if "above" not in name})

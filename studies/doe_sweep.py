@@ -1,4 +1,4 @@
-"""What matters for the noise of a blade: a design of experiments over the thesis' six variables.
+"""Effect of six variables on the noise of a blade: a design of experiments on the thesis' problem.
 
 A Latin hypercube over thickness and design lift coefficient at hub, middle and tip, within the
 bounds of `low_noise_design.py` and for its operating point: 8 m/s and 1.20 N. Every sample is a row
@@ -37,9 +37,9 @@ from propmdao.components import SweepDriver
 
 Array = npt.NDArray[np.float64]
 VARIABLES = {  # column of the table: name
-    f"{name}_cp[{i}]": f"{short} {at}"
+    f"{name}_cp[{i}]": f"{short} {place}"
     for name, short in ((T_C, "t/c"), (CL_I, "lift"))
-    for i, at in enumerate(AT)
+    for i, place in enumerate(AT)
 }
 RESPONSES = {
     "oaspl_db": "OASPL, dB",
@@ -59,7 +59,7 @@ class Surrogate:
     Attributes
     ----------
     coefficients : (n_terms,) array
-        Of `terms`.
+        Coefficients of the columns that `terms` makes.
     q2 : float
         Share of the variance that is predicted when each sample in turn is left out.
     """
@@ -69,7 +69,7 @@ class Surrogate:
 
     @classmethod
     def fit(cls, x: Array, y: Array) -> "Surrogate":
-        """Least squares to samples, x (n_samples, n_variables) and y (n_samples,)."""
+        """Fit by least squares to samples, x (n_samples, n_variables) and y (n_samples,)."""
         matrix = terms(x)
         if len(y) <= matrix.shape[1]:
             raise ValueError(
@@ -144,38 +144,38 @@ def sensitivities(x: Array, y: Array, surrogate: Surrogate, seed: int) -> dict[s
 
 
 def plot_responses(x: Array, y: dict[str, Array], fits: dict[str, Surrogate]) -> Figure:
-    """Noise and torque over every variable, with the mean of the surrogate over the others."""
-    shown = ("oaspl_db", "torque")
+    """Draw noise and torque over every variable, with the surrogate's mean over the others."""
+    responses = ("oaspl_db", "torque")
     figure = Figure(figsize=(12.0, 5.0), dpi=100, layout="constrained")
-    axes = figure.subplots(len(shown), x.shape[1], sharex="col", sharey="row")
+    axes = figure.subplots(len(responses), x.shape[1], sharex="col", sharey="row")
     lower, upper = (
         np.concatenate([b[side] for b in BOUNDS.values()]) for side in ("lower", "upper")
     )
     for column, name in enumerate(VARIABLES.values()):
         values = lower[column] + 0.5 * (x[:, column] + 1.0) * (upper[column] - lower[column])
-        at = np.linspace(-1.0, 1.0, 21)
-        for row, response in enumerate(shown):
+        scaled = np.linspace(-1.0, 1.0, 21)
+        for row, response in enumerate(responses):
             axes[row, column].plot(values, y[response], ".", color="0.6", markersize=3)
             means = []
-            for level in at:
+            for level in scaled:
                 points = x.copy()
                 points[:, column] = level
                 means.append(fits[response](points).mean())
-            levels = lower[column] + 0.5 * (at + 1.0) * (upper[column] - lower[column])
+            levels = lower[column] + 0.5 * (scaled + 1.0) * (upper[column] - lower[column])
             axes[row, column].plot(levels, means, color="#D55E00")
             axes[row, 0].set_ylabel(RESPONSES[response])
         axes[-1, column].set_xlabel(name)
     return figure
 
 
-def plot_sensitivities(found: dict[str, dict[str, Array]]) -> Figure:
-    """Sobol' indices of every response, alone and in all."""
+def plot_sensitivities(measures: dict[str, dict[str, Array]]) -> Figure:
+    """Draw the Sobol' indices of every response, alone and in all."""
     figure = Figure(figsize=(12.0, 3.6), dpi=100, layout="constrained")
-    axes = figure.subplots(1, len(found), sharey=True)
+    axes = figure.subplots(1, len(measures), sharey=True)
     place = np.arange(len(VARIABLES))
-    for ax, (response, measures) in zip(axes, found.items(), strict=True):
-        ax.barh(place, measures["in all"], color="#56B4E9", label="with interactions")
-        ax.barh(place, measures["alone"], height=0.4, color="#0072B2", label="alone")
+    for ax, (response, indices) in zip(axes, measures.items(), strict=True):
+        ax.barh(place, indices["in all"], color="#56B4E9", label="with interactions")
+        ax.barh(place, indices["alone"], height=0.4, color="#0072B2", label="alone")
         ax.set_title(RESPONSES[response], fontsize=10)
         ax.set_yticks(place, list(VARIABLES.values()))
         ax.set_xlim(0.0, 1.0)
@@ -185,16 +185,16 @@ def plot_sensitivities(found: dict[str, dict[str, Array]]) -> Figure:
     return figure
 
 
-def print_table(found: dict[str, dict[str, Array]], fits: dict[str, Surrogate], n: int) -> None:
-    """Regression coefficients and Sobol' indices, a row per variable."""
+def print_table(measures: dict[str, dict[str, Array]], fits: dict[str, Surrogate], n: int) -> None:
+    """Print regression coefficients and Sobol' indices, a row per variable."""
     table = Table(box=box.SIMPLE_HEAD, padding=0, title=f"{n} samples: regression | Sobol' in all")
     table.add_column("")
-    for response in found:
+    for response in measures:
         table.add_column(RESPONSES[response], justify="right")
     for i, name in enumerate(VARIABLES.values()):
-        cells = [f"{m['regression'][i]:+.2f} | {m['in all'][i]:.2f}" for m in found.values()]
+        cells = [f"{m['regression'][i]:+.2f} | {m['in all'][i]:.2f}" for m in measures.values()]
         table.add_row(name, *cells)
-    quality = [f"{float(found[r]['R2']):.2f} | {fits[r].q2:.3f}" for r in found]
+    quality = [f"{float(measures[r]['R2']):.2f} | {fits[r].q2:.3f}" for r in measures]
     table.add_row("R2 linear | Q2 quadratic", *quality)
     Console(width=120).print(table)
 
@@ -214,12 +214,12 @@ def main() -> None:
     run_sweep(table, options.samples, options.seed, options.workers)
     x, y = read_table(table.with_suffix(".csv"))
     fits = {name: Surrogate.fit(x, values) for name, values in y.items()}
-    found: dict[str, dict[str, Any]] = {
+    measures: dict[str, dict[str, Any]] = {
         name: sensitivities(x, y[name], fits[name], options.seed) for name in RESPONSES
     }
-    print_table(found, fits, len(x))
+    print_table(measures, fits, len(x))
     plot_responses(x, y, fits).savefig(options.output / "doe_responses.png")
-    plot_sensitivities(found).savefig(options.output / "doe_sensitivities.png")
+    plot_sensitivities(measures).savefig(options.output / "doe_sensitivities.png")
 
 
 if __name__ == "__main__":

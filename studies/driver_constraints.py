@@ -1,4 +1,4 @@
-"""Which drivers hold constraints: small problems with known optima, solved by each of them.
+"""Drivers and constraints: small problems with known optima, solved by every driver.
 
 A constraint that a driver does not enforce is worse than none, because the result looks valid. Here
 every driver that comes with OpenMDAO and needs no other package meets vector, two-sided and
@@ -43,7 +43,7 @@ class Case(NamedTuple):
 
 
 def failing(x: np.ndarray) -> tuple[Any, Any]:
-    """Its minimum without the failure would lie at 0.2."""
+    """Objective whose minimum would lie at 0.2 if the analysis did not fail below 0.3."""
     if x[0] < 0.3:
         raise om.AnalysisError("stalled below 0.3")
     return (x[0] - 0.2) ** 2 + 1.0, x[:1]
@@ -99,7 +99,7 @@ class Model(om.ExplicitComponent):
 
 
 def drivers() -> dict[str, Driver]:
-    """Every driver by the name in the table, with as many designs as its neighbours."""
+    """Make every driver, by its name in the table, all with about as many designs."""
     generations = {"max_gen": GENERATIONS, "pop_size": POPULATION}
     evolution = om.ScipyOptimizeDriver(optimizer="differential_evolution", disp=False)
     evolution.opt_settings.update(seed=SEED, maxiter=GENERATIONS, popsize=POPULATION // 2)
@@ -119,7 +119,7 @@ def drivers() -> dict[str, Driver]:
 
 
 def solve(case: Case, driver: Driver) -> tuple[str, int]:
-    """What a driver makes of a case, and how often it ran the model."""
+    """Solve a case with a driver: how it ends, and how often it ran the model."""
     prob = om.Problem(driver=driver, reports=False)
     prob.model.add_subsystem("comp", Model(case=case), promotes=["*"])
     prob.model.add_design_var("x", lower=case.lower, upper=case.upper)
@@ -144,16 +144,16 @@ def solve(case: Case, driver: Driver) -> tuple[str, int]:
 
 
 def results() -> dict[str, dict[str, tuple[str, int]]]:
-    """What `solve` says, by case and driver."""
-    found: dict[str, dict[str, tuple[str, int]]] = {}
-    # Where OpenMDAO's own take their seed from.
+    """Outcomes of `solve`, by case and driver."""
+    outcomes: dict[str, dict[str, tuple[str, int]]] = {}
+    # OpenMDAO's own drivers take their seed from here.
     os.environ.setdefault("SimpleGADriver_seed", str(SEED))
     os.environ.setdefault("DifferentialEvolutionDriver_seed", str(SEED))
     for name, case in CASES.items():
         with warnings.catch_warnings(), contextlib.redirect_stdout(io.StringIO()):
             warnings.simplefilter("ignore")
-            found[name] = {label: solve(case, driver) for label, driver in drivers().items()}
-    return found
+            outcomes[name] = {label: solve(case, driver) for label, driver in drivers().items()}
+    return outcomes
 
 
 def main() -> None:
@@ -164,18 +164,18 @@ def main() -> None:
     output.mkdir(parents=True, exist_ok=True)
     with tempfile.TemporaryDirectory() as folder:
         os.environ["OPENMDAO_WORKDIR"] = folder
-        found = results()
-    names = list(next(iter(found.values())))
+        outcomes = results()
+    names = list(next(iter(outcomes.values())))
     with (output / "driver_constraints.csv").open("w", newline="", encoding="utf-8") as file:
         writer = csv.writer(file)
         writer.writerow(["case", "driver", "objective above the optimum, or what is wrong", "runs"])
-        writer.writerows([case, name, *found[case][name]] for case in found for name in names)
+        writer.writerows([case, name, *outcomes[case][name]] for case in outcomes for name in names)
     for half in (names[:4], names[4:]):
         table = Table(box=box.SIMPLE_HEAD, padding=0, show_edge=False)
         table.add_column("objective above the optimum | runs")
         for name in half:
             table.add_column(name, justify="right")
-        for case, row in found.items():
+        for case, row in outcomes.items():
             table.add_row(case, *(f"{row[name][0]} | {row[name][1]}" for name in half))
         Console(width=160).print(table)
 

@@ -1,4 +1,4 @@
-"""What is heard on the ground when a propeller flies over: levels against time, SEL and EPNL.
+"""Sound on the ground when a propeller flies over: levels against time, SEL and EPNL.
 
 The propeller of a small aircraft in level flight, its axis along the path, over a microphone flush
 with hard ground. Tones come as a pressure record with its Doppler shift, broadband noise in third
@@ -35,7 +35,7 @@ ARC = np.linspace(-90.0, 90.0, 37)  # deg
 TRIPPED = "total, tripped"
 
 
-def hemisphere(found: Analysis) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def hemisphere(analysis: Analysis) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Elevations, azimuths from the nose [deg] and levels below the aircraft, flying along [dB]."""
     elevation, azimuth = np.linspace(-90.0, 0.0, 31), np.linspace(0.0, 360.0, 73)
     axes = np.asarray(poses(TRACK, np.zeros(1)).rotation)[0]
@@ -62,11 +62,11 @@ def main() -> None:
     with (output / "levels_dba.csv").open("w", newline="", encoding="utf-8") as stream:
         writer = csv.writer(stream)
         writer.writerow(["time_s", *levels])
-        for row in zip(heard.time, *levels.values(), strict=True):
+        for row in zip(untripped.time, *levels.values(), strict=True):
             writer.writerow([f"{value:.2f}" for value in row])
-    print(f"{PROPELLER.name} at {found.rpm:.0f} rpm, {SPEED:g} m/s, {FLIGHT.height:g} m above the "
-          "ground:")  # fmt: skip
-    for name, flyover in (("total", heard), (TRIPPED, tripped)):
+    print(f"{PROPELLER.name} at {analysis.rpm:.0f} rpm, {SPEED:g} m/s, {FLIGHT.height:g} m above "
+          "the ground:")  # fmt: skip
+    for name, flyover in (("total", untripped), (TRIPPED, tripped)):
         summary = flyover.to_dict()
         level = summary["levels"]["total"]
         print(f"{name}: LAmax {level['lamax_dba']:.1f} dBA, SEL {level['sel_dba']:.1f} dBA, "

@@ -60,12 +60,12 @@ OBJECTIVES = {"tones": "tones.soft_maximum_db", "total": "total.soft_maximum_db"
 
 
 def units(name: str) -> str | None:
-    """Unit of `BOUNDS` and `SLOPES`."""
+    """Unit in which `BOUNDS` and `SLOPES` give a distribution."""
     return "deg" if name == "beta" else None
 
 
 def free_indices(name: str) -> np.ndarray:
-    """Control points that are free."""
+    """Indices of a distribution's control points that are free."""
     lower, upper = BOUNDS[name]
     return np.flatnonzero(lower < upper)
 
@@ -78,16 +78,16 @@ def build_problem(
     Parameters
     ----------
     objective : str
-        Which of `OBJECTIVES` is minimised; the other must not exceed the limit.
+        Name of the one of `OBJECTIVES` that is minimised; the other must not exceed the limit.
     torque_limit, noise_limit : float
-        Of the baseline [N m], [dB] or [dBA].
+        Torque [N m] and level [dB] or [dBA] of the baseline.
     fidelity : Fidelity, optional
-        By default that of the thesis' problem.
+        Numbers of panels and harmonics, by default those of the thesis' problem.
 
     Returns
     -------
     om.Problem
-        Set up, at the baseline's chord and twist and sections NACA 4409.
+        Problem, set up, at the baseline's chord and twist and sections NACA 4409.
     """
     prob = om.Problem(reports=False)
     model = prob.model
@@ -143,7 +143,7 @@ def min_thickness() -> np.ndarray:
 
 
 def _add_thickness(model: om.Group) -> None:
-    """Thickness of the sections in metres, of the splines' values at the stations."""
+    """Add the thickness of the sections in metres, from the splines' values at the stations."""
     n = len(BASELINE.r_over_R)
     thickness = om.ExecComp(
         "section_thickness = radius * chord * ratio",
@@ -153,16 +153,16 @@ def _add_thickness(model: om.Group) -> None:
         ratio={"shape": n},
     )
     model.add_subsystem("strength", thickness, promotes_outputs=["section_thickness"])
-    for name, of in (("chord", "chord_over_R"), ("ratio", "thickness_over_chord")):
-        model.promotes("strength", inputs=[(name, of)], src_indices=om.slicer[0, :])
+    for name, source in (("chord", "chord_over_R"), ("ratio", "thickness_over_chord")):
+        model.promotes("strength", inputs=[(name, source)], src_indices=om.slicer[0, :])
 
 
 def _add_slopes(model: om.Group) -> None:
-    """Slopes of the distributions between control points."""
+    """Add the slopes of the distributions between control points."""
     n = AT.size - 1
     for name in SLOPES:
-        of = {"shape": n, "units": "rad" if name == "beta" else None}
-        slope = om.ExecComp("slope = (after - before) / apart", slope=of, after=of, before=of,
+        meta = {"shape": n, "units": "rad" if name == "beta" else None}
+        slope = om.ExecComp("slope = (after - before) / apart", slope=meta, after=meta, before=meta,
                             apart={"val": np.diff(AT)})  # fmt: skip
         model.add_subsystem(f"{name}_slope", slope)
         for side, first in (("before", 0), ("after", 1)):
@@ -174,9 +174,10 @@ def _add_slopes(model: om.Group) -> None:
 
 def write_blade(prob: om.Problem, name: str, folder: Path) -> Propeller:
     """Make the blade of a design and write it as a file for `propmdao analyze`."""
-    at = {n: prob.get_val(n, units=units(n)).ravel() for n in BOUNDS}
+    values = {n: prob.get_val(n, units=units(n)).ravel() for n in BOUNDS}
     return with_naca_sections(
-        BASELINE, name, BASELINE.r_over_R.tolist(), at["camber_over_chord"],
-        at["thickness_over_chord"], folder, c_over_R=at["chord_over_R"], beta_deg=at["beta"],
-        sweep_over_R=at["sweep_over_R"], source="free-form blade of a design study",
+        BASELINE, name, BASELINE.r_over_R.tolist(), values["camber_over_chord"],
+        values["thickness_over_chord"], folder, c_over_R=values["chord_over_R"],
+        beta_deg=values["beta"], sweep_over_R=values["sweep_over_R"],
+        source="free-form blade of a design study",
     )  # fmt: skip

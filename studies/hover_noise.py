@@ -47,14 +47,14 @@ class HoverTones:
     rpm, elevation_deg : arrays
         Rotation speeds [rev/min], elevations of the microphones [deg].
     spl_db, measured_db, calibrated_db, scaled_db : (n_rpm, n_microphones) arrays
-        Computed, measured, computed with the twist offset, and computed with the loads scaled to
-        thrust and torque measured.
+        Levels computed, measured, computed with the twist offset, and computed with the loads
+        scaled to thrust and torque measured.
     thesis_db : (n_rpm, n_microphones) array
         Absolute errors of the thesis.
     loads, measured_loads : (n_rpm, 2) arrays
-        Thrust [N] and torque [N m].
+        Thrust [N] and torque [N m], computed and measured.
     arc_db : (n_rpm, n_arc) array
-        Computed on `ARC`.
+        Levels computed on `ARC`.
     """
 
     rpm: np.ndarray
@@ -73,9 +73,9 @@ def hover_tones() -> HoverTones:
     """Compute the tones where they were measured."""
     test: dict[str, Any] = tomllib.loads(MEASURED.read_text(encoding="utf-8"))
     rpm, elevation = (np.array(test["blade_passage"][key]) for key in ("rpm", "elevation_deg"))
-    known = measured_loads(rpm, test["thrust"])
+    measured = measured_loads(rpm, test["thrust"])
     points = [(test["radius"], angle) for angle in (*elevation, *ARC)]
-    found = [analyze(PROPELLER, rpm=speed, density=DENSITY, observers=points) for speed in rpm]
+    published = [analyze(PROPELLER, rpm=speed, density=DENSITY, observers=points) for speed in rpm]
     twist = calibrated_twist_deg(PROPELLER, read_wind_tunnel(WIND_TUNNEL).static)
     turned = [
         analyze(PROPELLER, rpm=speed, density=DENSITY, observers=points[: elevation.size],
@@ -90,11 +90,11 @@ def hover_tones() -> HoverTones:
         elevation_deg=elevation,
         spl_db=level[:, : elevation.size],
         measured_db=np.array(test["blade_passage"]["spl_db"]),
-        calibrated_db=np.array([spl_db(of.tones.total[:, 0]) for of in turned]),
+        calibrated_db=np.array([spl_db(a.tones.total[:, 0]) for a in turned]),
         scaled_db=np.array(scaled)[:, : elevation.size],
         thesis_db=np.array(test["thesis"]["absolute_error_db"]),
         loads=loads,
-        measured_loads=known,
+        measured_loads=measured,
         arc_db=level[:, elevation.size :],
     )
 
@@ -107,7 +107,7 @@ def measured_loads(rpm: np.ndarray, test: dict[str, list[float]]) -> np.ndarray:
     return np.stack([np.interp(rpm, test["rpm"], test["thrust"]), torque], axis=1)
 
 
-def scaled_tone(found: Analysis, thrust: float, torque: float) -> np.ndarray:
+def scaled_tone(analysis: Analysis, thrust: float, torque: float) -> np.ndarray:
     """Level of the first tone with the loads along and about the axis multiplied."""
     r, n = PROPELLER.r_over_R, Fidelity()
     radii = mesh_radii(r, n.n_spanwise, n.n_surface_span)
@@ -118,35 +118,36 @@ def scaled_tone(found: Analysis, thrust: float, torque: float) -> np.ndarray:
         surface_panels(surface), loads, PROPELLER.n_blades, found.rpm * np.pi / 30.0, 0.0, DENSITY,
         SOUND_SPEED, point(*found.observers.T), 1,
     )  # fmt: skip
-    return np.asarray(spl_db(heard.total[:, 0]))
+    return np.asarray(spl_db(scaled.total[:, 0]))
 
 
-def off_power_law_db(heard: HoverTones) -> float:
+def off_power_law_db(levels: HoverTones) -> float:
     """Largest distance of the measured levels from a power of rotation speed at each microphone."""
-    x = np.log(heard.rpm)
-    fits = [np.polyval(np.polyfit(x, level, 1), x) for level in heard.measured_db.T]
-    return float(np.abs(np.array(fits).T - heard.measured_db).max())
+    x = np.log(levels.rpm)
+    fits = [np.polyval(np.polyfit(x, level, 1), x) for level in levels.measured_db.T]
+    return float(np.abs(np.array(fits).T - levels.measured_db).max())
 
 
-def rows(heard: HoverTones) -> list[tuple[str, ...]]:
-    """Table of errors at each microphone, its head first, mean and largest at the end."""
+def rows(levels: HoverTones) -> list[tuple[str, ...]]:
+    """Tabulate the errors at each microphone, the head first, mean and largest at the end."""
     head = ("rpm", "elevation, deg", "measured, dB", "computed, dB", "error, dB",
             "calibrated: error, dB", "measured loads: error, dB",
             "thesis: size of error, dB")  # fmt: skip
     table: list[tuple[str, ...]] = [head]
     error, turned, scaled = (
-        of - heard.measured_db for of in (heard.spl_db, heard.calibrated_db, heard.scaled_db)
+        computed - levels.measured_db
+        for computed in (levels.spl_db, levels.calibrated_db, levels.scaled_db)
     )
-    for i, rpm in enumerate(heard.rpm):
-        for k, angle in enumerate(heard.elevation_deg):
+    for i, rpm in enumerate(levels.rpm):
+        for k, angle in enumerate(levels.elevation_deg):
             table.append(
-                (f"{rpm}", f"{angle:+.1f}", f"{heard.measured_db[i, k]:.2f}",
-                 f"{heard.spl_db[i, k]:.2f}", f"{error[i, k]:+.2f}", f"{turned[i, k]:+.2f}",
-                 f"{scaled[i, k]:+.2f}", f"{heard.thesis_db[i, k]:.2f}")
+                (f"{rpm}", f"{angle:+.1f}", f"{levels.measured_db[i, k]:.2f}",
+                 f"{levels.spl_db[i, k]:.2f}", f"{error[i, k]:+.2f}", f"{turned[i, k]:+.2f}",
+                 f"{scaled[i, k]:+.2f}", f"{levels.thesis_db[i, k]:.2f}")
             )  # fmt: skip
-    for label, of in (("mean size", np.mean), ("largest", np.max)):
-        sizes = [f"{of(np.abs(values)):.2f}" for values in
-                 (error, turned, scaled, heard.thesis_db)]  # fmt: skip
+    for label, measure in (("mean size", np.mean), ("largest", np.max)):
+        sizes = [f"{measure(np.abs(values)):.2f}" for values in
+                 (error, turned, scaled, levels.thesis_db)]  # fmt: skip
         table.append((label, "", "", "", *sizes))
     return table
 
@@ -159,22 +160,22 @@ def main() -> None:
     output = parser.parse_args().output.absolute()
     output.mkdir(parents=True, exist_ok=True)
 
-    heard = hover_tones()
-    head, *body = rows(heard)
+    levels = hover_tones()
+    head, *body = rows(levels)
     with (output / "hover_noise.csv").open("w", newline="", encoding="utf-8") as stream:
         csv.writer(stream).writerows([head, *body])
     table = Table(*head, box=None, padding=(0, 1, 0, 0))
     for row in body:
         table.add_row(*row)
     Console(highlight=False).print(table)
-    for rpm, loads, known in zip(heard.rpm, heard.loads, heard.measured_loads, strict=True):
-        print(f"{rpm} rpm: thrust {loads[0]:.2f} N, measured {known[0]:.2f}; "
-              f"torque {loads[1]:.4f} N m, measured {known[1]:.4f}")  # fmt: skip
-    print(f"Measured levels are up to {off_power_law_db(heard):.1f} dB off a power of rpm.")
-    names = [f"{rpm} rpm" for rpm in heard.rpm]
+    for rpm, loads, measured in zip(levels.rpm, levels.loads, levels.measured_loads, strict=True):
+        print(f"{rpm} rpm: thrust {loads[0]:.2f} N, measured {measured[0]:.2f}; "
+              f"torque {loads[1]:.4f} N m, measured {measured[1]:.4f}")  # fmt: skip
+    print(f"Measured levels are up to {off_power_law_db(levels):.1f} dB off a power of rpm.")
+    names = [f"{rpm} rpm" for rpm in levels.rpm]
     comparisons.tone_directivity(
-        ARC, dict(zip(names, heard.arc_db, strict=True)),
-        heard.elevation_deg, dict(zip(names, heard.measured_db, strict=True)),
+        ARC, dict(zip(names, levels.arc_db, strict=True)),
+        levels.elevation_deg, dict(zip(names, levels.measured_db, strict=True)),
     ).savefig(output / "directivity.png")  # fmt: skip
     print(f"Table and figure: {output}")
 

@@ -52,7 +52,7 @@ BOUNDS = {
 FIDELITY = Fidelity()  # panels and harmonics
 POPULATION = 24  # designs in a generation
 
-# What the thesis reports, tables 4.9 and 4.10.
+# Values that the thesis reports, tables 4.9 and 4.10.
 THESIS_DESIGN = {T_C: [0.0581, 0.0309, 0.0346], CL_I: [0.7792, 0.3899, 0.5313]}
 THESIS = {
     "rpm": (4200.0, 4636.0),
@@ -140,17 +140,17 @@ def column(propeller: Propeller, analysis: Analysis) -> dict[str, Cell]:
     """Results at the microphone, and the design variables as this blade has them."""
     values: dict[str, Cell] = {**at_observer(analysis, MICROPHONE_INDEX)}
     blade, airfoils = blade_distributions(propeller, CL_I), dict(propeller.airfoils)
-    for at, r in AT.items():
+    for place, r in AT.items():
         t, lift = (float(np.interp(r, propeller.r_over_R, blade[name])) for name in (T_C, CL_I))
         naca = f"NACA {100 * max_camber_for_design_lift(lift):.0f}4{100 * t:02.0f}"  # whole digits
         section = airfoils.get(r, "blend")
-        values[f"section {at}"] = naca if section.endswith(".dat") else section
-        values |= {f"{T_C} {at}": t, f"{CL_I} {at}": lift}
+        values[f"section {place}"] = naca if section.endswith(".dat") else section
+        values |= {f"{T_C} {place}": t, f"{CL_I} {place}": lift}
     return values
 
 
 def designs_tried(output: Path, torque_limit: float) -> tuple[list[float], list[bool]]:
-    """Objective of every design, nan where the analysis failed, and whether it is feasible."""
+    """Read the objective of every design, nan where the analysis failed, and its feasibility."""
     cases = om.CaseReader(output / "cases.sql").get_cases("driver")[:-1]  # the last: best again
     objective = [case["oaspl_db"][0] if case.success else np.nan for case in cases]
     return objective, [case.success and case["torque"][0] <= torque_limit for case in cases]
@@ -181,9 +181,9 @@ def main() -> None:
         "reported:\nAPC-SF": {key: values[0] for key, values in THESIS.items()},
         "reported:\noptimum": {key: values[1] for key, values in THESIS.items()},
     }
-    rows = [(f"t/c {at}", f"{T_C} {at}", ".4f") for at in AT]
-    rows += [(f"design lift {at}", f"{CL_I} {at}", ".4f") for at in AT]
-    rows += [(f"section {at}", f"section {at}", "") for at in AT]
+    rows = [(f"t/c {place}", f"{T_C} {place}", ".4f") for place in AT]
+    rows += [(f"design lift {place}", f"{CL_I} {place}", ".4f") for place in AT]
+    rows += [(f"section {place}", f"section {place}", "") for place in AT]
     print_comparison([*rows, *ROWS], columns, output / "low_noise_design.csv")
     same_rpm = evaluate(BASELINE, rpm=THESIS["rpm"][0])
     print(NOTES.format(**at_observer(same_rpm, MICROPHONE_INDEX)))

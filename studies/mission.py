@@ -79,23 +79,23 @@ def mission(
     twist: bool = False,
     fidelity: Fidelity = FIDELITY,
 ) -> om.Problem:
-    """Climb at the least energy, set up and with a first guess.
+    """Set up the climb at the least energy, with a first guess.
 
     Parameters
     ----------
     height : float
-        To climb [m].
+        Height to climb [m].
     segments : int
-        Of the collocation, three points each.
+        Segments of the collocation, three points each.
     twist : bool
-        Whether the blade angles at three radii are design variables, too.
+        True makes the blade angles at three radii design variables, too.
     fidelity : Fidelity
         Numbers of panels.
 
     Returns
     -------
     om.Problem
-        Ready to run; its trajectory is ``trajectory.climb``.
+        Problem, ready to run; its trajectory is ``trajectory.climb``.
     """
     driver = om.ScipyOptimizeDriver(optimizer="SLSQP", maxiter=60, tol=1e-6)
     prob = om.Problem(driver=driver, reports=False)
@@ -143,12 +143,12 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.split("\n\n")[0])
     parser.add_argument("--height", type=float, default=HEIGHT, help="m, default %(default)s")
     parser.add_argument("--twist", action="store_true", help="choose the blade angles, too")
-    given = parser.parse_args()
-    prob = mission(given.height, twist=given.twist)
+    options = parser.parse_args()
+    prob = mission(options.height, twist=options.twist)
     prob.run_driver()
     names = ("height", "speed", "thrust_required", "rpm", "current", "efficiency", "energy")
     show(prob, names)
-    if given.twist:
+    if options.twist:
         angles = prob.get_val("trajectory.climb.parameter_vals:beta_cp", units="deg")
         print(f"blade angles at r/R {RADII}: {np.round(angles.ravel(), 2)} deg")
 
@@ -156,11 +156,11 @@ def main() -> None:
 def show(prob: om.Problem, names: tuple[str, ...]) -> None:
     """Print a table of the trajectory."""
 
-    def of(name: str) -> Any:
+    def series(name: str) -> Any:
         return prob.get_val(f"trajectory.climb.timeseries.{name}")[:, 0]
 
     print(" ".join(f"{name:>11}" for name in ("time", *names)))
-    for row in zip(of("time"), *(of(name) for name in names), strict=True):
+    for row in zip(series("time"), *(series(name) for name in names), strict=True):
         print(" ".join(f"{value:11.4g}" for value in row))
 
 

@@ -27,21 +27,21 @@ RADII = [0.15, 0.5, 1.0]
 def multi_point(
     propeller: Propeller, fidelity: Fidelity = FIDELITY, max_iterations: int = 20
 ) -> om.Problem:
-    """Design problem, run once at the propeller's own blade, whose torque is the limit.
+    """Set up the design problem and run it at the propeller's own blade, whose torque is the limit.
 
     Parameters
     ----------
     propeller : Propeller
-        Where the search starts.
+        Propeller from which the search starts.
     fidelity : Fidelity
         Numbers of panels and harmonics.
     max_iterations : int
-        Of the optimiser.
+        Most iterations of the optimiser.
 
     Returns
     -------
     om.Problem
-        Ready for its driver; `level` is the objective [dBA].
+        Problem, ready for its driver; `level` is the objective [dBA].
     """
     n, n_observers = SPEED.size, len(OBSERVERS)
     driver = om.ScipyOptimizeDriver(optimizer="SLSQP", maxiter=max_iterations, tol=1e-4, disp=False)
@@ -76,7 +76,7 @@ def multi_point(
 
 
 def show(prob: om.Problem, title: str) -> None:
-    """Print the blade and what it does at each point."""
+    """Print the blade and its results at each point."""
     print(title)
     print(f"  chord/R {np.round(prob.get_val('chord_over_R_cp'), 4)}, "
           f"blade angle {np.round(prob.get_val('beta_cp', units='deg'), 2)} deg "

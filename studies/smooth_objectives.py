@@ -6,7 +6,7 @@ the trimmed rotation speed. Along each
 
 - the second differences are compared with their neighbours, and where they stand out most the line
   is looked at again 2 and 8 times finer. They shrink with the step to the power 2 where the slope
-  is continuous, 1 at a kink and 0 at a jump: below 1.5 is reported as found;
+  is continuous, 1 at a kink and 0 at a jump: below 1.5 is reported as a kink;
 - the derivative that the model gives is compared with central differences in the middle.
 
 What the interpolation of the polars leaves, jumps of the curvature, is allowed: powers stay 2.
@@ -70,7 +70,7 @@ class Line:
             self._prob.run_model()
         except om.AnalysisError:
             return np.full(len(RESPONSES), np.nan)
-        return np.array([self._prob.get_val(of).ravel()[k] for of, (k, _) in RESPONSES.items()])
+        return np.array([self._prob.get_val(name).ravel()[k] for name, (k, _) in RESPONSES.items()])
 
     def slope(self, position: float) -> Array:
         """Derivatives (n_responses,) by the position, from the model's totals."""
@@ -84,8 +84,8 @@ class Line:
             for name, part in zip(free_form.BOUNDS, parts, strict=True)
         ])  # fmt: skip
         return np.array([
-            np.concatenate([totals[of, name][k] for name in wrt]) @ along
-            for of, (k, _) in RESPONSES.items()
+            np.concatenate([totals[response, name][k] for name in wrt]) @ along
+            for response, (k, _) in RESPONSES.items()
         ])  # fmt: skip
 
 
@@ -103,9 +103,9 @@ def suspects(values: Array) -> list[int]:
     return [int(k) + 1 for k in np.argsort(-second / usual)[:SUSPECTS]]
 
 
-def power(function: Callable[[float], Array], at: float, step: float) -> Array:
-    """Power of the step with which second differences shrink within a step around a place."""
-    values = np.array([function(at + step * k / 16.0) for k in range(-16, 17)])
+def power(function: Callable[[float], Array], position: float, step: float) -> Array:
+    """Power of the step with which second differences shrink within a step around a position."""
+    values = np.array([function(position + step * k / 16.0) for k in range(-16, 17)])
 
     def largest(k: int) -> Array:
         """Second difference over k sixteenths, wherever they begin: a kink lies between them."""
@@ -117,29 +117,31 @@ def power(function: Callable[[float], Array], at: float, step: float) -> Array:
 
 def scan(lines: list[Line], n: int) -> tuple[Array, list[Suspect]]:
     """Values (n_lines, n, n_responses) and the places where they are least smooth."""
-    position = np.linspace(0.0, 1.0, n)
-    scans, found = [], []
+    positions = np.linspace(0.0, 1.0, n)
+    scans, least_smooth = [], []
     for number, line in enumerate(lines):
-        values = np.array([line(at) for at in position])
+        values = np.array([line(position) for position in positions])
         scans.append(values)
-        at_response: dict[int, list[int]] = {}
+        responses_at: dict[int, list[int]] = {}
         for k, column in enumerate(values.T):
             for index in suspects(column):
-                at_response.setdefault(index, []).append(k)
-        for index, responses in at_response.items():
-            powers = power(line, position[index], position[1])
-            found += [
-                Suspect([*RESPONSES][k], number, position[index], float(powers[k]))
+                responses_at.setdefault(index, []).append(k)
+        for index, responses in responses_at.items():
+            powers = power(line, positions[index], positions[1])
+            least_smooth += [
+                Suspect([*RESPONSES][k], number, positions[index], float(powers[k]))
                 for k in responses
             ]
-    return np.array(scans), found
+    return np.array(scans), least_smooth
 
 
 def derivative_errors(lines: list[Line]) -> Array:
     """Largest error of the totals against differences, over the largest slope: (n_responses,)."""
-    at = 0.5
-    exact = np.array([line.slope(at) for line in lines])
-    central = np.array([(line(at + STEP) - line(at - STEP)) / (2.0 * STEP) for line in lines])
+    middle = 0.5
+    exact = np.array([line.slope(middle) for line in lines])
+    central = np.array(
+        [(line(middle + STEP) - line(middle - STEP)) / (2.0 * STEP) for line in lines]
+    )
     return np.abs(exact - central).max(axis=0) / np.abs(exact).max(axis=0)
 
 
@@ -150,16 +152,17 @@ def survey(n_lines: int = 3, n: int = 201) -> tuple[Array, list[Suspect], Array]
     return *scan(lines, n), derivative_errors(lines)
 
 
-def rows(values: Array, found: list[Suspect], errors: Array) -> Rows:
-    """Table by response, its head first."""
+def rows(values: Array, least_smooth: list[Suspect], errors: Array) -> Rows:
+    """Tabulate the responses, the head first."""
     table: Rows = [("response", "range", "largest second difference", "least power",
                     "derivative against differences", "kinks")]  # fmt: skip
     for k, (name, (_, label)) in enumerate(RESPONSES.items()):
-        of, powers = values[..., k], [one.power for one in found if one.response == name]
-        second = np.nanmax(np.abs(np.diff(of, 2, axis=1)))
+        response = values[..., k]
+        powers = [suspect.power for suspect in least_smooth if suspect.response == name]
+        second = np.nanmax(np.abs(np.diff(response, 2, axis=1)))
         table.append(
-            (label, f"{np.nanmax(of) - np.nanmin(of):.3g}", f"{second:.1e}", f"{min(powers):.2f}",
-             f"{errors[k]:.0e}", f"{sum(p < KINK for p in powers)}")
+            (label, f"{np.nanmax(response) - np.nanmin(response):.3g}", f"{second:.1e}",
+             f"{min(powers):.2f}", f"{errors[k]:.0e}", f"{sum(p < KINK for p in powers)}")
         )  # fmt: skip
     failed = f"{np.isnan(values).any(axis=2).sum()} of {values[..., 0].size}"
     return [*table, ("analyses that failed", failed, "", "", "", "")]
@@ -179,16 +182,18 @@ def main() -> None:
     if options.quick:
         thesis.FIDELITY = QUICK
 
-    values, found, errors = survey(options.lines, options.points)
-    print(markdown(rows(values, found, errors)))
-    for name, line, position, of in sorted(found, key=lambda one: one.power)[:5]:
-        print(f"{name}: line {line} at {position:.4f}, power {of:.2f}")
+    values, least_smooth, errors = survey(options.lines, options.points)
+    print(markdown(rows(values, least_smooth, errors)))
+    for suspect in sorted(least_smooth, key=lambda suspect: suspect.power)[:5]:
+        print(f"{suspect.response}: line {suspect.line} at {suspect.position:.4f}, "
+              f"power {suspect.power:.2f}")  # fmt: skip
     with (output / "smooth_objectives.csv").open("w", newline="", encoding="utf-8") as stream:
         writer = csv.writer(stream)
         writer.writerow(["line", "position", *RESPONSES])
         for number, line_values in enumerate(values):
-            for at, row in zip(np.linspace(0.0, 1.0, options.points), line_values, strict=True):
-                writer.writerow([number, at, *row])
+            positions = np.linspace(0.0, 1.0, options.points)
+            for position, row in zip(positions, line_values, strict=True):
+                writer.writerow([number, position, *row])
     figure = searches.line_scans(
         np.linspace(0.0, 1.0, options.points),
         {name: values[..., k] for k, name in enumerate(RESPONSES)},

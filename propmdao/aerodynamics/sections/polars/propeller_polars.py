@@ -47,7 +47,7 @@ def polars_for(
         folder and ending; it goes before the catalogue. It is taken at any camber and thickness,
         and at any transition: a design that changes them needs polars that know them.
     transition : Transition
-        Where boundary layers turn turbulent. The catalogue's tables are made at
+        Transition of the boundary layers to turbulent flow. The catalogue's tables are made at
         `propmdao.aerodynamics.sections.polars.shipped.SHIPPED_N_CRIT`; at any other n_crit
         NeuralFoil makes the tables of all shapes.
 

@@ -58,7 +58,7 @@ def polar_sources(
     own : dict of PolarTable, optional
         The user's tables, by airfoil.
     transition : Transition
-        Where boundary layers turn turbulent.
+        Transition of the boundary layers to turbulent flow.
 
     Returns
     -------
@@ -89,7 +89,7 @@ def find_sources(
         The user's tables, by the airfoil's name in the propeller, or its file's name without
         folder and ending.
     transition : Transition
-        Where boundary layers turn turbulent.
+        Transition of the boundary layers to turbulent flow.
 
     Returns
     -------
