@@ -34,7 +34,6 @@ from propmdao.records.loads import PointLoads
 from propmdao.records.pytrees import Scalar, record
 from propmdao.runtime.compilation import compiled
 
-_KINEMATIC_VISCOSITY = 1.46e-5  # air at 15 C [m^2/s]; only the wake's core knows it
 _TOLERANCE = 1.0e-9  # relative, in the induced velocity
 _GUESS = 0.05  # of the tip speed
 
@@ -122,7 +121,7 @@ def loads_at(flow: AxialFlow, induced_velocity: Scalar) -> LatticeLoads:
     core = core_radius(
         jnp.asarray(case.wake.ages),
         state.rotation_speed,
-        _KINEMATIC_VISCOSITY,
+        state.air.kinematic_viscosity,
         BOUND_CORE * rotor.radius,
     )
     onset = axial_onset(lattice, state, induced_velocity)
