@@ -38,6 +38,8 @@ def modules(checkout: Path) -> dict[str, ast.Module]:
             if folder == "propmdao" and inside[0] == "components":
                 continue  # the same files as components/, through the link
             name = ".".join((package, *inside)).removesuffix(".__init__")
+            if name == "propmdao.__main__":
+                continue  # the front door of the command line, as propmdao itself is of scripts
             found[name] = ast.parse(path.read_text(encoding="utf-8"))
     return found
 
