@@ -167,9 +167,11 @@ def solve(case: RotorCase, thrust_guess: Scalar = 0.0) -> RotorLoads:
             loads = evaluate(params, w)
             return residual(params, w, loads), loads
 
+        # In hover the air may go either way.
+        hover = state.speed == 0.0
         w, loads = decreasing_root(
             trial,
-            -0.5 * state.speed + 1.0e-6 * tip_speed,
+            jnp.where(hover, -tip_speed, -0.5 * state.speed + 1.0e-6 * tip_speed),
             tip_speed,
             jnp.where(thrust_guess == 0.0, _GUESS * tip_speed, known),
             _TOLERANCE,
@@ -258,7 +260,8 @@ def rotor_loads(
     thrust = n_blades * loads.thrust
     tip_speed, area = state.rotation_speed * rotor.radius, jnp.pi * rotor.radius**2
     agrees = jnp.abs(induced_velocity(flow, thrust) - w) < 1.0e-6 * tip_speed
-    within_momentum_theory = thrust > -0.5 * area * state.air.density * state.speed**2
+    windmilling_limit = -0.5 * area * state.air.density * state.speed**2
+    within_momentum_theory = (state.speed == 0.0) | (thrust > windmilling_limit)
     settled = jnp.abs(loads.sections.residual).max() < SETTLED
     strip_thrust, strip_torque = strip_loads(loads)
     return RotorLoads(

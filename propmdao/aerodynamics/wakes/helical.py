@@ -102,8 +102,9 @@ def helical_wake(
     inner = (speed + law.inside * w) * time
 
     # Continuity, with the velocity on the axis of the semi-infinite vortex cylinder,
-    # V + w (1 + s / sqrt(1 + s^2)) (McCormick 1967, eq. 4-48), s in radii downstream.
-    s = (speed + 1.5 * w) * time / radius
+    # V + w (1 + s / sqrt(1 + s^2)) (McCormick 1967, eq. 4-48), s in radii downstream: above the
+    # rotor where it hovers at negative thrust.
+    s = jnp.abs(speed + 1.5 * w) * time / radius
     contraction = jnp.sqrt((speed + w) / (speed + w + w * s / jnp.sqrt(1.0 + s * s)))
 
     r_over_R = jnp.hypot(trailing_nodes[:, 0], trailing_nodes[:, 1]) / radius

@@ -1,6 +1,9 @@
 """Momentum theory: the induced velocity at the disk of a rotor from its thrust.
 
-T = 2 rho A w (V + w)                                           (Glauert 1935, eq. I 1.13)
+    T = 2 rho A w (V + w)                                           (Glauert 1935, eq. I 1.13)
+
+In hover nothing tells up from down: a rotor that pushes the air up, at negative thrust, is the
+mirror image of one that pushes it down, and so is its induced velocity.
 """
 
 from __future__ import annotations
@@ -31,9 +34,13 @@ def momentum_induced_velocity(thrust: Scalar, state: RotorState, radius: Scalar)
     Returns
     -------
     float
-        Induced velocity w, positive downstream, root of T = 2 rho A w (V + w) [m/s].
+        Induced velocity w, positive downstream, root of T = 2 rho A w (V + w) [m/s]; in hover
+        negative where the thrust is.
     """
     disk_area = jnp.pi * radius**2
-    x = 0.25 * state.speed**2 + thrust / (2.0 * state.air.density * disk_area)
+    upward = (state.speed == 0.0) & (jnp.asarray(thrust) < 0.0)
+    sign = jnp.where(upward, -1.0, 1.0)
+    x = 0.25 * state.speed**2 + sign * thrust / (2.0 * state.air.density * disk_area)
     floor = (_LEAST_SPEED_FRACTION * (state.rotation_speed * radius)) ** 2
-    return -0.5 * state.speed + jnp.sqrt(0.5 * (x + jnp.sqrt(x * x + 4.0 * floor * floor)))
+    w = -0.5 * state.speed + jnp.sqrt(0.5 * (x + jnp.sqrt(x * x + 4.0 * floor * floor)))
+    return sign * w

@@ -76,6 +76,17 @@ def test_uncambered_untwisted_blade_in_hover_carries_nothing(slow_flyer):
     flat = flat.at[..., 2].set(0.0)
     solution = solve(slow_flyer, speed=0.0, nodes=flat)
     assert abs(solution.thrust) < 1e-9 and abs(solution.torque) < 1e-9
+    assert solution.converged
+
+
+def test_hover_at_negative_thrust_is_the_mirror_image(slow_flyer):
+    nodes = slow_flyer.nodes()
+    up, down = (solve(slow_flyer, speed=0.0, nodes=nodes.at[..., 2].multiply(s)) for s in (1, -1))
+    assert up.converged and down.converged and up.thrust > 0.5
+    np.testing.assert_allclose(down.thrust, -up.thrust, rtol=1e-9)
+    np.testing.assert_allclose(down.torque, up.torque, rtol=1e-9)
+    np.testing.assert_allclose(down.induced_velocity, -up.induced_velocity, rtol=1e-9)
+    np.testing.assert_allclose(down.circulation, -up.circulation, rtol=1e-9)
 
 
 def test_more_blades_give_more_thrust_but_each_gives_less(slow_flyer):
