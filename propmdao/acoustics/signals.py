@@ -1,7 +1,7 @@
-"""What is heard of rotors: tones by their amplitudes, records of pressure over time.
+"""Sound of rotors at observers: tones by their amplitudes, records of pressure over time.
 
-Both hold the sources of the sound apart, by name, in `parts`; whoever works on them works on all
-parts, by `each` or by a loop, and names none.
+Both hold the sources of the sound apart, by name, in `parts`. Code that works on them works on
+all parts, by `each` or by a loop, and names none.
 """
 
 from __future__ import annotations

@@ -42,7 +42,7 @@ def coefficients(
     thrust, torque : float
         Thrust and torque of all blades [N], [N m].
     state : RotorState
-        How the propeller turns and flies.
+        Rotation speed, flight speed and air of the propeller.
     diameter : float
         Diameter from tip to tip [m].
 

@@ -31,7 +31,7 @@ class TrimError(ValueError):
 
 
 class Solver(Protocol):
-    """What a trim needs of a solver of the loads; `solutions.axial` is such a module."""
+    """Functions that a trim needs of a solver; `solutions.axial` is such a module."""
 
     def solve(self, case: RotorCase) -> RotorLoads:
         """Return the loads at the rotation speed of the case."""
@@ -42,7 +42,7 @@ class Solver(Protocol):
     def evaluate(
         self, flow: Any, thrust_required: Scalar, rotation_speed: Scalar
     ) -> tuple[Array, Any]:
-        """Return the thrust of a trial [N], right at the solution, and a pytree of floats."""
+        """Return the thrust of a trial [N], exact at the solution, and a pytree of floats."""
 
     def solution(
         self, flow: Any, thrust_required: Scalar, rotation_speed: Scalar, results: Any
@@ -57,7 +57,7 @@ class Bounds:
     Attributes
     ----------
     low, high : scalar
-        Lowest and highest [rad/s].
+        Lowest and highest rotation speed of the search [rad/s].
     """
 
     low: Scalar
@@ -71,8 +71,8 @@ class Trimmed:
     Attributes
     ----------
     rotation_speed : scalar
-        The root, exactly differentiable; it means nothing unless the thrust missing is positive at
-        the lower and negative at the upper bound [rad/s].
+        Rotation speed that gives the thrust, exactly differentiable [rad/s]; it means nothing
+        unless the thrust missing is positive at the lower and negative at the upper bound.
     missing : (scalar, scalar)
         Thrust required less the thrust at the lower and at the upper bound [N].
     loads : RotorLoads
@@ -97,8 +97,8 @@ def rotation_bounds(radius: Scalar, speed: Scalar) -> Bounds:
     Returns
     -------
     Bounds
-        Rotation speeds; the upper one is 0 where the flight alone is too fast, which
-        `require_bounds` refuses.
+        Lowest and highest rotation speed; the upper one is 0 where the flight alone is too fast,
+        which `require_bounds` refuses.
     """
     highest = jnp.sqrt(jnp.maximum(LARGEST_TIP_SPEED**2 - speed**2, 0.0))
     return Bounds(LEAST_TIP_SPEED / radius, highest / radius)
@@ -110,7 +110,7 @@ def require_bounds(bounds: Bounds, speed: Scalar) -> None:
     Parameters
     ----------
     bounds : Bounds
-        Given ones, or those of `rotation_bounds`.
+        Lowest and highest rotation speed, as the user gives them or by `rotation_bounds`.
     speed : float
         Axial flight speed [m/s].
 
@@ -140,11 +140,11 @@ def trim(
     solver : Solver
         Module that solves for the loads, as `solutions.axial`.
     case : RotorCase
-        What is solved; its own rotation speed does not matter.
+        Case to solve; its own rotation speed does not matter.
     thrust_required : float
         Thrust of all blades [N].
     bounds : Bounds
-        Where the rotation speed is looked for.
+        Lowest and highest rotation speed of the search.
 
     Returns
     -------
@@ -170,9 +170,9 @@ def require_reached(
     Parameters
     ----------
     trimmed : Trimmed
-        What `solve_for_thrust` returned.
+        Result of `solve_for_thrust`.
     solver, case, thrust_required, bounds
-        What `solve_for_thrust` was given.
+        Arguments that `solve_for_thrust` was called with.
 
     Raises
     ------
@@ -197,14 +197,14 @@ def rotation_speed_by_interpolation(
 ) -> Array:
     """Rotation speed by the thesis' rule: thrust linear between the two bounds.
 
-    Off by up to 5 % in thrust, which is nearly a parabola; kept to show by how much.
+    The rule misses the thrust, which is nearly a parabola, by up to 5 %; it is kept to show this.
 
     Parameters
     ----------
     solver : Solver
         Module that solves for the loads.
     case : RotorCase
-        What is solved; its own rotation speed does not matter.
+        Case to solve; its own rotation speed does not matter.
     thrust_required : float
         Thrust of all blades [N].
     bounds : Bounds
@@ -213,7 +213,7 @@ def rotation_speed_by_interpolation(
     Returns
     -------
     float
-        Rotation speed; beyond the two, an extrapolation [rad/s].
+        Rotation speed, extrapolated where it lies beyond the bounds [rad/s].
     """
     low, high = bounds.low, bounds.high
     # Mapped, so that the lattice is compiled once for both.
@@ -236,16 +236,16 @@ def solve_for_thrust(
     solver : Solver
         Module that solves for the loads (static).
     case : RotorCase
-        What is solved; its own rotation speed does not matter.
+        Case to solve; its own rotation speed does not matter.
     thrust_required : float
         Thrust of all blades [N].
     bounds : Bounds
-        Where the rotation speed is looked for.
+        Lowest and highest rotation speed of the search.
 
     Returns
     -------
     Trimmed
-        Exactly differentiable in every argument but the bounds.
+        Rotation speed and loads, exactly differentiable in every argument but the bounds.
     """
     bounds = jax.tree.map(lambda bound: jnp.asarray(bound, float), bounds)
     flow = solver.flow_at(case.turning(bounds.low))
@@ -292,9 +292,9 @@ def _bracketed_search(
 ) -> tuple[Array, Any, tuple[Array, Array]]:
     """Root of the missing thrust, the results there and the thrust missing at either bound.
 
-    Both bounds are evaluated first. Then CT, taken as a straight line in J through the last
-    two trials, gives the next (it nearly is one); where that leaves the bracket, bisect. Three to
-    six trials.
+    Both bounds are evaluated first. The next trial then comes from CT, which is nearly a straight
+    line in J, drawn through the last two trials. Where that leaves the bracket, the bracket is
+    halved. Three to six trials are enough.
     """
 
     def unfinished(state: _Search) -> Array:

@@ -1,4 +1,4 @@
-"""Files that other programs read: the rotor's skin, its distributions, its sections."""
+"""Files for other programs: the rotor's skin, its distributions, its sections."""
 
 from __future__ import annotations
 
@@ -31,9 +31,9 @@ def export_stl(
     path : str or Path
         File to write.
     propeller : Propeller
-        The propeller.
+        Propeller to write.
     fidelity : Fidelity
-        Fidelity, of which `n_contour` and `n_surface_span` count here.
+        Resolution, of which `n_contour` and `n_surface_span` count here.
 
     Returns
     -------
@@ -54,7 +54,7 @@ def export_csv(path: str | Path, propeller: Propeller) -> int:
     path : str or Path
         File to write.
     propeller : Propeller
-        The propeller.
+        Propeller to write.
 
     Returns
     -------
@@ -90,7 +90,7 @@ def export_section(path: str | Path, propeller: Propeller, r_over_R: float) -> i
     path : str or Path
         File to write.
     propeller : Propeller
-        The propeller.
+        Propeller to write.
     r_over_R : float
         Radius of the section over the tip radius.
 

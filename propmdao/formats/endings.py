@@ -18,7 +18,7 @@ class FileFormat:
     Attributes
     ----------
     contents : str
-        Description of such a file in help texts and messages.
+        Description of a file of this format in help texts and messages.
     function : str
         Function as ``module:name``. It is imported when a file is read or written, for help texts
         show these tables too, and what readers and writers need takes seconds to import.
@@ -113,7 +113,7 @@ def described(formats: Mapping[str, FileFormat]) -> str:
     Parameters
     ----------
     formats : mapping of str to FileFormat
-        One of the tables here.
+        Formats by ending, one of the tables of this module.
 
     Returns
     -------

@@ -37,7 +37,7 @@ def load_polars(*paths: str | os.PathLike[str]) -> PolarTable:
     ------
     PolarError
         If a file cannot be read or is wrong, a Reynolds number comes twice, or one of several files
-        is of a format that holds all of a section.
+        is of a format that holds a whole section.
     """
     readers = [POLAR_READERS.get(Path(path).suffix.lower(), POLAR_READERS[""]) for path in paths]
     for path, reader in zip(paths, readers, strict=True):
@@ -65,7 +65,7 @@ def read_polar(path: str | os.PathLike[str]) -> Polar:
     Raises
     ------
     PolarError
-        If the file cannot be read, lacks Re or a column, holds something that is no number, or
+        If the file cannot be read, lacks Re or a column, holds something that is not a number, or
         its values cannot be right; the message begins with the file and names line and column.
     """
     lines = _lines(path)
@@ -156,7 +156,7 @@ def read_c81(path: str | os.PathLike[str]) -> PolarTable:
     Raises
     ------
     PolarError
-        If the file cannot be read, ends early or holds something that is no number; the message
+        If the file cannot be read, ends early or holds something that is not a number; the message
         begins with the file and names line and column.
     """
     lines = _lines(path)
@@ -203,8 +203,8 @@ def _fields(
     """Numbers of one row of a C81 file, which may go on over several lines."""
     values = []
     for number in range(first, first + per_row):
-        line, here = lines[number], min(count - _PER_LINE * (number - first), _PER_LINE)
-        for field in range(0 if leading and number == first else 1, here + 1):
+        line, n_fields = lines[number], min(count - _PER_LINE * (number - first), _PER_LINE)
+        for field in range(0 if leading and number == first else 1, n_fields + 1):
             text = line[_WIDTH * field : _WIDTH * (field + 1)]
             where = (
                 f"{path}: line {number + 1}, columns {_WIDTH * field + 1}-{_WIDTH * (field + 1)}"

@@ -19,8 +19,9 @@ def load_propeller(name_or_path: str | os.PathLike[str]) -> Propeller:
     Parameters
     ----------
     name_or_path : str or path
-        A name of `propmdao.propeller.catalog.catalog_names`, which goes before a file of that name,
-        or the path of a file with an ending of `propmdao.formats.endings.PROPELLER_READERS`.
+        A name of `propmdao.propeller.catalog.catalog_names`, which has precedence over a file of
+        that name, or the path of a file with an ending of
+        `propmdao.formats.endings.PROPELLER_READERS`.
 
     Returns
     -------
@@ -30,8 +31,8 @@ def load_propeller(name_or_path: str | os.PathLike[str]) -> Propeller:
     Raises
     ------
     PropellerError
-        If there is none of that name (the message lists near ones), or its file is wrong or has an
-        ending that is not read.
+        If there is no propeller of that name (the message lists near names), or its file is wrong
+        or has an ending that is not read.
     """
     known = catalog_names()
     name = os.fspath(name_or_path)

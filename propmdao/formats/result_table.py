@@ -23,14 +23,14 @@ class ResultTable:
     Parameters
     ----------
     path : path
-        CSV file; it and its folder are made if there is none.
+        CSV file; the file and its folder are made if they do not exist.
     point_columns, result_columns : sequence of str
-        Names of the columns that tell points apart, and of those for their results.
+        Names of the columns that tell points apart, and of the columns for their results.
 
     Raises
     ------
     ValueError
-        When the file has other columns, or rows that do not fit them.
+        If the file has other columns, or rows that do not fit the columns.
     """
 
     def __init__(
@@ -78,7 +78,7 @@ class ResultTable:
         results : mapping
             Values of the result columns; one that is missing leaves its cell empty.
         reason : str
-            Reason why the point has failed; empty if it has not.
+            Reason why the point has failed; empty for one that has not.
         """
         row = {**point, **results}
         row |= {STATUS: "failed" if reason else "ok", REASON: " ".join(reason.split())}
@@ -153,7 +153,7 @@ def table_files(path: str | os.PathLike[str]) -> tuple[Path, Path | None]:
     Raises
     ------
     ValueError
-        When the ending is another one, or pyarrow, an extra, is not installed for the second.
+        If the ending is another one, or pyarrow (an extra) is not installed for .parquet.
     """
     path = Path(path)
     if path.suffix == ".csv":
@@ -165,10 +165,10 @@ def table_files(path: str | os.PathLike[str]) -> tuple[Path, Path | None]:
     return path.with_suffix(".csv"), path
 
 
-def _differences(there: list[str], here: list[str]) -> str:
+def _differences(present: list[str], wanted: list[str]) -> str:
     """Name the columns that only one of two headers has."""
-    only = [f"{name} only there" for name in there if name not in here][:3]
-    only += [f"{name} only here" for name in here if name not in there][:3]
+    only = [f"{name} only there" for name in present if name not in wanted][:3]
+    only += [f"{name} only here" for name in wanted if name not in present][:3]
     return ", ".join(only) or "their order"
 
 

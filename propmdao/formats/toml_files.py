@@ -32,7 +32,7 @@ def read_toml(path: str | os.PathLike[str]) -> Propeller:
     Raises
     ------
     PropellerError
-        If the file cannot be read, is no TOML, lacks a key, has an unknown one or holds a value
+        If the file cannot be read, is not TOML, lacks a key, has an unknown one or holds a value
         out of range; the message begins with the file.
     """
     path = Path(path)
@@ -83,7 +83,7 @@ def propeller_from_text(text: str, label: str, folder: Path | None) -> Propeller
     Parameters
     ----------
     text : str
-        TOML.
+        Text of the file (TOML).
     label : str
         Name of the file, with which messages begin.
     folder : Path or None

@@ -18,11 +18,11 @@ class Recording(NamedTuple):
     Attributes
     ----------
     path : Path
-        The file.
+        Sound file.
     full_scale : float
-        Pressure of its largest number, 1.0 [Pa]; also in the file's comment.
+        Pressure that the file's largest number, 1.0, stands for [Pa]; also in the file's comment.
     peak : float
-        Largest pressure in it [Pa].
+        Largest pressure in the record [Pa].
     duration : float
         Length of the record [s].
     """
@@ -45,12 +45,12 @@ def write_wav(
     Parameters
     ----------
     path : str or Path
-        The file, ending in .wav.
+        File to write, ending in .wav.
     pressure : (n_times,) or (n_channels, n_times) array_like
-        Record, one or a channel for each observer [Pa].
+        Record of the pressure, one or a channel for each observer [Pa].
     full_scale : float
-        Pressure of the largest number in the file [Pa]. Two blades written with the same one are
-        as loud beside each other as they are; see `common_full_scale`.
+        Pressure of the largest number in the file [Pa]. Files written with the same full scale keep
+        their loudness relative to each other; see `common_full_scale`.
     sample_rate : int
         Samples per second [Hz].
     bits : {24, 32}

@@ -98,7 +98,7 @@ class SpanInterpolation:
     Attributes
     ----------
     r_over_R : (n,) array
-        Radii reached.
+        Radii to which the values are carried, over the tip radius.
     smooth : (n, n_stations) array
         Not-a-knot cubic spline, for chord, beta, sweep and rake.
     linear : (n, n_stations) array
@@ -118,9 +118,9 @@ def span_interpolation(
     Parameters
     ----------
     station_r_over_R : (n_stations,) array
-        Stations of the blade, rising, at least two.
+        Radii of the blade's stations over the tip radius, rising, at least two.
     r_over_R : (n,) array
-        Radii wanted, within the stations.
+        Radii wanted over the tip radius, within the stations.
 
     Returns
     -------

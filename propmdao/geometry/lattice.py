@@ -44,9 +44,9 @@ def lattice_span(root_r_over_R: float, n_spanwise: int) -> npt.NDArray[np.float6
 def strip_middle(n_spanwise: int) -> npt.NDArray[np.float64]:
     """Position of the collocation and force points in each strip, as a fraction root to tip.
 
-    They lie at the middle of the cosine angle, not of the strip: the points at which Glauert's
-    integral is exact for the trailing vortices of cosine-spaced strips (Lan, J. Aircraft 11, 1974).
-    The middle of the strip needs 48 strips where this needs 12.
+    The points lie at the middle of the cosine angle, not of the strip: there Glauert's integral is
+    exact for the trailing vortices of cosine-spaced strips (Lan, J. Aircraft 11, 1974). Points in
+    the middle of the strip need 48 strips where these need 12.
 
     Parameters
     ----------
@@ -73,7 +73,7 @@ def strip_radii(root_r_over_R: float, n_spanwise: int) -> npt.NDArray[np.float64
     root_r_over_R : float
         Radius at which the blade begins, r/R.
     n_spanwise : int
-        Number of strips.
+        Number of strips of the lattice.
 
     Returns
     -------
@@ -111,7 +111,7 @@ def strip_interpolation(stations: npt.NDArray[np.float64], n_spanwise: int) -> S
     stations : (n_stations,) array
         r/R of the blade's stations; the first is the root.
     n_spanwise : int
-        Number of strips.
+        Number of strips of the lattice.
 
     Returns
     -------

@@ -1,4 +1,4 @@
-"""Shape of the trailing edge, which broadband noise asks for."""
+"""Shape of the trailing edge, which broadband noise needs."""
 
 from __future__ import annotations
 

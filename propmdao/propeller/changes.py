@@ -9,14 +9,14 @@ from propmdao.propeller.description import Propeller
 
 @dataclasses.dataclass(frozen=True)
 class Change:
-    """What is changed of a described propeller before it is analysed; by default nothing.
+    """Changes of a described propeller before it is analysed; by default there are none.
 
     Attributes
     ----------
     twist_offset_deg : float
-        Added to the blade angle everywhere [deg].
+        Angle added to the blade angle everywhere [deg].
     chord_factor : float
-        The chord is multiplied by it everywhere.
+        Factor by which the chord is multiplied everywhere.
     diameter : float or None
         Diameter to which the whole blade is stretched [m]; None: as described.
     n_blades : int or None
@@ -34,20 +34,20 @@ class Change:
         Parameters
         ----------
         propeller : Propeller
-            As it is described.
+            Propeller as it is described.
 
         Returns
         -------
         Propeller
-            The changed one; its source says what was changed.
+            Changed propeller; its source says what was changed.
 
         Raises
         ------
         PropellerError
-            If a value is then out of range.
+            If a value of the changed propeller is out of range.
         """
-        said = str(self)
-        if not said:
+        changes = str(self)
+        if not changes:
             return propeller
         return dataclasses.replace(
             propeller,
@@ -55,11 +55,11 @@ class Change:
             c_over_R=propeller.c_over_R * self.chord_factor,
             diameter=propeller.diameter if self.diameter is None else self.diameter,
             n_blades=propeller.n_blades if self.n_blades is None else self.n_blades,
-            source=f"{propeller.source} Changed: {said}.".strip(),
+            source=f"{propeller.source} Changed: {changes}.".strip(),
         )
 
     def __str__(self) -> str:
-        """Say it in one line; nothing where nothing is changed."""
+        """Describe the changes in one line; empty where there are none."""
         parts = []
         if self.twist_offset_deg:
             parts.append(f"blade angle {self.twist_offset_deg:+g} deg everywhere")

@@ -36,7 +36,7 @@ def number(key: str, value: Any) -> float:
     Raises
     ------
     PropellerError
-        If the value is text, a truth value, not finite or no number at all.
+        If the value is not a number (text or a truth value, too) or not finite.
     """
     try:
         result = float(value)
@@ -67,7 +67,7 @@ def distribution(key: str, values: Any, r: FloatArray | None = None) -> FloatArr
     Raises
     ------
     PropellerError
-        If the values are no list of numbers, are not one per station or not all finite.
+        If the values are not a list of numbers, not one per station or not all finite.
     """
     try:
         array = np.array(values)
@@ -96,7 +96,7 @@ def require(
     Parameters
     ----------
     key, rule : str
-        Name of the distribution and what it must do; the message begins ``key must rule``.
+        Name of the distribution, and its rule in words; the message begins ``key must rule``.
     holds : (n_stations,) array of bool
         True at the stations that keep the rule.
     values : (n_stations,) array
@@ -131,8 +131,8 @@ def stations(values: Any) -> FloatArray:
     Raises
     ------
     PropellerError
-        If there are fewer than two stations, or they do not rise or do not end at 1: the diameter
-        says where the tip is, a blade that ends before it contradicts itself, and nothing is
+        If there are fewer than two stations, or they do not rise or do not end at 1. The diameter
+        says where the tip is, so a blade that ends before it contradicts itself, and nothing is
         extrapolated.
     """
     r = distribution("r_over_R", values)
@@ -161,7 +161,7 @@ def airfoil_pairs(pairs: Iterable[Any]) -> tuple[tuple[float, str], ...]:
     Raises
     ------
     PropellerError
-        If there are no pairs, something is no such pair, r/R does not rise within 0..1 or an
+        If there are no pairs, an item is not such a pair, r/R does not rise within 0..1 or an
         airfoil cannot be found or read.
     """
     checked: list[tuple[float, str]] = []

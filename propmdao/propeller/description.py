@@ -37,22 +37,24 @@ class Propeller:
     name : str
         Name of the propeller.
     diameter : float
-        Tip to tip [m].
+        Diameter from tip to tip [m].
     n_blades : int
         Number of blades, at least 1.
     r_over_R : (n_stations,) array
-        Stations, rising; the last is the tip, 1.
+        Radii of the stations over the tip radius, rising; the last is the tip, 1.
     c_over_R, beta_deg : (n_stations,) arrays
         Chord over tip radius and blade angle from the rotor plane [deg].
     airfoils : sequence of (float, str)
-        r/R and airfoil (catalogue name, "naca4412" or a .dat path), rising in r/R; blended
-        linearly between, held constant beyond.
+        Pairs of r/R and airfoil (catalogue name, "naca4412" or a .dat path), rising in r/R;
+        airfoils are blended linearly between, held constant beyond.
     thickness_over_chord : (n_stations,) array, optional
         Maximum thickness over chord; the airfoils' own by default.
     sweep_over_R : (n_stations,) array or number, optional
-        Quarter chord aft (against rotation) of the radial line, 0 by default.
+        Distance of the quarter chord aft (against rotation) of the radial line over the tip radius,
+        0 by default.
     rake_over_R : (n_stations,) array or number, optional
-        Quarter chord toward thrust of the rotor plane, 0 by default.
+        Distance of the quarter chord from the rotor plane toward thrust over the tip radius, 0 by
+        default.
     source : str
         Origin of the numbers.
 

@@ -1,4 +1,4 @@
-"""What tells propellers of one name apart."""
+"""Checksums that tell propellers of one name apart."""
 
 from __future__ import annotations
 

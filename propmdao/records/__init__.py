@@ -1,1 +1,1 @@
-"""What travels between the rooms: records, the table of quantities, units."""
+"""Records that travel between the rooms, the table of quantities, units."""

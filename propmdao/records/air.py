@@ -20,17 +20,18 @@ class Air:
     Attributes
     ----------
     density : scalar
-        [kg/m^3].
+        Density of the air [kg/m^3].
     sound_speed : scalar
-        [m/s].
+        Speed of sound [m/s].
     dynamic_viscosity : scalar
-        [Pa s].
+        Dynamic viscosity of the air [Pa s].
     temperature : scalar
-        Of the air that absorbs sound [K]; it does not change the speed of sound, see `standard`.
+        Temperature of the air that absorbs sound [K]; it does not change the speed of sound, see
+        `standard`.
     pressure : scalar
-        Of the air that absorbs sound [Pa].
+        Pressure of the air that absorbs sound [Pa].
     relative_humidity : scalar
-        0 ... 1, of the vapour pressure over water; absorption depends on it.
+        Share of the vapour pressure over water, 0 ... 1; absorption depends on it.
     """
 
     density: Scalar = 1.225
@@ -59,9 +60,9 @@ class Air:
         altitude : float
             Geopotential altitude, 0 to 11,000 m [m].
         temperature_offset : float
-            Warmer than the standard by so much, at the standard's pressure [K].
+            Temperature above the standard's, at the standard's pressure [K].
         relative_humidity : float
-            0 ... 1; the density is that of dry air.
+            Relative humidity, 0 ... 1; the density is that of dry air.
 
         Returns
         -------
@@ -75,7 +76,7 @@ class Air:
 
         References
         ----------
-        ISO 2533:1975; dynamic viscosity by Sutherland's formula as it stands there.
+        ISO 2533:1975; the dynamic viscosity is by Sutherland's formula in the standard.
         """
         if not 0.0 <= altitude <= _TROPOPAUSE:
             raise ValueError(f"altitude must be within 0 ... {_TROPOPAUSE:g} m; it is {altitude:g}")
@@ -97,17 +98,17 @@ class Air:
 
 
 def require_known_air(air: Air) -> None:
-    """Refuse air of which the standard does not say how it absorbs; not traceable by JAX.
+    """Refuse air whose absorption ISO 9613-1 does not state; not traceable by JAX.
 
     Parameters
     ----------
     air : Air
-        Its state.
+        State of the air.
 
     Raises
     ------
     ValueError
-        If it is outside -20 to 50 degrees Celsius, 0 to 100 % and 1 to 200 kPa.
+        If the air is outside -20 to 50 degrees Celsius, 0 to 100 % humidity or 1 to 200 kPa.
     """
     for name, value, low, high, unit in (
         ("temperature", air.temperature - 273.15, -20.0, 50.0, "degrees Celsius"),

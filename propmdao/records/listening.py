@@ -1,4 +1,4 @@
-"""Who listens to a propeller, and what is around it: observers, ground, air."""
+"""Observers of a propeller, and the ground and air around it."""
 
 from __future__ import annotations
 
@@ -24,8 +24,8 @@ class Surroundings:
         on hard ground, wherever it is, so that pressures are doubled; None: no ground. The flow
         around the rotor knows of no ground.
     level_flight : bool
-        Whether the rotor's axis lies along the ground, azimuth 0 pointing down to it; by default it
-        stands upright, in hover and climb.
+        Whether the rotor's axis lies along the ground, azimuth 0 pointing down to the ground; by
+        default the axis stands upright, as in hover and climb.
     absorption : bool
         Whether the air, which is that of the operating point, absorbs sound.
 
@@ -68,8 +68,8 @@ class Surroundings:
         Parameters
         ----------
         positions : (..., 3) array
-            Positions from the rotor centre, the third coordinate up, in level flight the first one
-        ahead [m].
+            Positions from the rotor centre [m], the third coordinate pointing up and, in level
+            flight, the first one ahead.
 
         Returns
         -------
@@ -89,14 +89,14 @@ class ObserverGroup:
     name : str
         Name of the group, for titles and tables.
     kind : {"arc", "point", "circle", "grid", "hemisphere"}
-        How its observers were placed.
+        Arrangement in which the observers of the group were placed.
     n : int
-        Number of its observers.
+        Number of observers in the group.
 
     Raises
     ------
     ValueError
-        If it has no observers or its kind is another word.
+        If the group has no observers or its kind is another word.
     """
 
     name: str
@@ -104,7 +104,7 @@ class ObserverGroup:
     n: int
 
     def __post_init__(self) -> None:
-        """Refuse groups that cannot be."""
+        """Refuse groups without observers or of an unknown kind."""
         if self.kind not in get_args(GroupKind):
             kinds = ", ".join(get_args(GroupKind))
             raise ValueError(f"kind of observers must be one of {kinds}; it is {self.kind!r}")
@@ -114,7 +114,7 @@ class ObserverGroup:
 
 @dataclasses.dataclass(frozen=True, eq=False)
 class Listening:
-    """Observers of a propeller, and what is around it.
+    """Observers of a propeller, and the ground and air around it.
 
     Attributes
     ----------
@@ -129,7 +129,7 @@ class Listening:
     Raises
     ------
     ValueError
-        If the observers are not (n, 3), or the groups do not hold as many as there are.
+        If the observers are not (n, 3), or the groups together have another number of observers.
     """
 
     observers: Floats = dataclasses.field(default_factory=lambda: np.zeros((0, 3)))
@@ -148,7 +148,7 @@ class Listening:
 
 
 def require_positions(observers: ArrayLike) -> Floats:
-    """Refuse observers that are no positions.
+    """Refuse observers whose positions are not finite or not (n, 3).
 
     Parameters
     ----------
@@ -163,7 +163,8 @@ def require_positions(observers: ArrayLike) -> Floats:
     Raises
     ------
     ValueError
-        If they have another shape or are not finite; the message names what makes positions.
+        If the positions have another shape or are not finite; the message names the functions
+        that make positions.
     """
     positions = np.asarray(observers, float)
     if positions.ndim != 2 or positions.shape[1] != 3:

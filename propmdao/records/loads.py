@@ -14,7 +14,7 @@ class PointLoads:
     Attributes
     ----------
     position : (n, 3) array
-        Where the forces act, blade frame at azimuth 0 [m].
+        Points at which the forces act, blade frame at azimuth 0 [m].
     force : (n, 3) array
         Force ON THE FLUID, blade frame at azimuth 0 [N].
     """

@@ -16,19 +16,19 @@ Tip = Literal["rounded", "square"]
 
 @dataclasses.dataclass(frozen=True)
 class Transition:
-    """Where boundary layers turn turbulent, in the polars of the sections.
+    """Transition of the boundary layers in the polars of the sections.
 
     Attributes
     ----------
     n_crit : float
-        Critical amplification exponent of the e^n method. The catalogue's polars have 5, what is
-        left of a quiet wind tunnel's 9 in a propeller's own turbulence; others are made by
-        NeuralFoil (extra ``polars``).
+        Critical amplification exponent of the e^n method. The catalogue's polars have 5, for a
+        propeller's own turbulence lowers the 9 of a quiet wind tunnel. Polars of other exponents
+        are made by NeuralFoil (extra ``polars``).
 
     Raises
     ------
     ValueError
-        If it is not positive.
+        If the exponent is not positive.
     """
 
     n_crit: float = 5.0
@@ -50,9 +50,9 @@ class LoadModel:
     stall_delay : bool
         Whether rotation delays the stall of the sections (Du and Selig).
     wake : WakeLaw
-        How the prescribed wake moves.
+        Law by which the prescribed wake moves.
     transition : Transition
-        Where boundary layers turn turbulent.
+        Transition of the boundary layers in the sections' polars.
     """
 
     viscous: bool = True
@@ -68,14 +68,14 @@ class SelfNoiseModel:
     Attributes
     ----------
     trip : {"none", "light", "heavy"}
-        How the boundary layers are tripped: of the noise, not of the loads.
+        Trip of the boundary layers in the noise model; it does not change the loads.
     tip : {"rounded", "square"}
         Planform of the blade's tip.
 
     Raises
     ------
     ValueError
-        If one of them is another word.
+        If trip or tip is another word.
     """
 
     trip: Trip = "none"
@@ -109,11 +109,11 @@ class Model:
     Attributes
     ----------
     loads : LoadModel
-        How the loads are computed.
+        Model of the loads.
     noise : NoiseModel
-        Which noise is computed.
+        Model of the noise that is computed beside the tones.
     fidelity : Fidelity
-        How finely blade, wake and sound are resolved.
+        Resolution of blade, wake and sound.
     """
 
     loads: LoadModel = dataclasses.field(default_factory=LoadModel)

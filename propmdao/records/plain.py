@@ -22,13 +22,13 @@ def to_plain(value: Any) -> Any:
     Parameters
     ----------
     value : record
-        A dataclass of numbers, text, arrays and other such dataclasses; what it holds is keyed by
-        the name that the table of quantities has for JSON.
+        A dataclass of numbers, text, arrays and other such dataclasses; each field is keyed by the
+        name that the table of quantities has for JSON.
 
     Returns
     -------
     dict
-        The same, for JSON.
+        The record's fields by their JSON names, ready for JSON.
     """
     if dataclasses.is_dataclass(value):
         return {
@@ -43,19 +43,19 @@ def to_plain(value: Any) -> Any:
 
 
 def from_plain(record: type[T], values: Any) -> T:
-    """Turn what `to_plain` made into the record again.
+    """Rebuild the record that `to_plain` has turned into a dictionary.
 
     Parameters
     ----------
     record : type
         Class of the record.
     values : dict
-        Its fields.
+        Fields of the record by their JSON names.
 
     Returns
     -------
     record
-        The same as it was.
+        Record with the values that it had before `to_plain`.
 
     Raises
     ------
@@ -81,7 +81,7 @@ def _restored(hint: Any, value: Any) -> Any:
             return from_plain(typing.cast(type, option), value)
         if typing.get_origin(option) is tuple:
             item = typing.get_args(option)[0]
-            return tuple(_restored(item, one) for one in value)
+            return tuple(_restored(item, entry) for entry in value)
         if isinstance(value, list) and typing.get_origin(option) is np.ndarray:
             return np.array(value, float).reshape(-1, 3)
     return value

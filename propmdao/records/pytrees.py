@@ -28,8 +28,8 @@ def record(cls: type[T]) -> type[T]:
     Returns
     -------
     type
-        The same class, frozen and registered with JAX, so that instances pass through
-        ``jit``, ``jvp`` and ``vjp``.
+        Frozen class registered with JAX, so that instances pass through ``jit``, ``jvp`` and
+        ``vjp``.
     """
     frozen = dataclasses.dataclass(frozen=True)(cls)
     return jax.tree_util.register_dataclass(frozen)
@@ -41,6 +41,6 @@ def static() -> Any:
     Returns
     -------
     dataclasses.Field
-        For the right side of an annotated field.
+        Field to be written on the right side of an annotated name.
     """
     return dataclasses.field(metadata={"static": True})

@@ -1,4 +1,4 @@
-"""Every quantity once: its name, unit, default and meaning, and what it is called elsewhere.
+"""Every quantity once: name, unit, default and meaning, and its names in files and options.
 
 Options and their help, keys of JSON, columns of tables, inputs and outputs of components and the
 nomenclature page (docs/conventions.md) come from this table. Nothing here is slow to import.
@@ -27,21 +27,22 @@ class Quantity:
     unit : str
         Unit as OpenMDAO writes it; empty where there is none.
     meaning : str
-        One line.
+        Meaning of the quantity, one line.
     record : str
-        Record of the request that holds it, as a dotted path; empty for a result.
+        Record of the request that holds the quantity, as a dotted path; empty for a result.
     default : object
-        Value where nothing is asked; None where the propeller or something else gives it.
+        Value where the user gives none; None where the propeller or another quantity decides.
     json : str
         Key in JSON and column in tables; by default the name.
     variable : str
         Name in OpenMDAO; by default the name.
     per_node : bool
-        Whether it belongs to an operating point, and has the axis of nodes in components.
+        Whether the quantity belongs to an operating point, and so has the axis of nodes in
+        components.
     option : str
         Option of the command line; empty where there is none. A switch turns the default over.
     placeholder : str
-        What stands for the value of the option in its help; empty for a switch.
+        Word that stands for the value of the option in its help; empty for a switch.
     help : str
         Help of the option; by default the meaning with the unit.
     """

@@ -13,12 +13,12 @@ from propmdao.records.units import RAD_PER_S
 
 @record
 class RotorState:
-    """A rotor that turns and flies through air: all that the solvers are told of its operation.
+    """Operation of a rotor as the solvers need it: it turns and flies through air.
 
     Attributes
     ----------
     rotation_speed : scalar
-        About +z [rad/s].
+        Rotation speed about +z [rad/s].
     speed : scalar
         Axial flight speed, 0 is hover [m/s].
     air : Air
@@ -41,7 +41,7 @@ class RotorState:
 
 @dataclasses.dataclass(frozen=True)
 class OperatingPoint:
-    """What a propeller is asked: a rotation speed or a thrust, at a flight speed, in some air.
+    """Operating point of a propeller: a rotation speed or a thrust, at a flight speed, in air.
 
     Attributes
     ----------
@@ -66,7 +66,7 @@ class OperatingPoint:
     air: Air = dataclasses.field(default_factory=Air)
 
     def __post_init__(self) -> None:
-        """Refuse points that no propeller can be at."""
+        """Refuse points without exactly one of rpm and thrust, or with values out of range."""
         if (self.rpm is None) == (self.thrust is None):
             raise ValueError("give either rpm or thrust")
         if self.rpm is not None and not 0.0 <= self.rpm < np.inf:
@@ -90,12 +90,12 @@ class OperatingPoint:
         Parameters
         ----------
         rotation_speed : float
-            [rad/s].
+            Rotation speed [rad/s].
 
         Returns
         -------
         RotorState
-            For the solvers.
+            Rotation speed, flight speed and air, as the solvers take them.
         """
         return RotorState(rotation_speed, float(self.speed), self.air)
 

@@ -1,4 +1,4 @@
-"""How the prescribed wake moves, and where its nodes are: numbers that a study may vary."""
+"""Speed and nodes of the prescribed wake: numbers that a study may vary."""
 
 from __future__ import annotations
 
@@ -17,13 +17,13 @@ class WakeLaw:
     Attributes
     ----------
     before_passage : scalar
-        Of the outer part until the next blade has passed over it, times the number of blades.
+        Speed of the outer part until the next blade has passed over it, times the number of blades.
     after_passage : scalar
-        Of the outer part from then on: the mean of both sides of the stream's edge.
+        Speed of the outer part after that passage: the mean of both sides of the stream's edge.
     inside : scalar
-        Of the inner part, carried by the air inside the stream.
+        Speed of the inner part, carried by the air inside the stream.
     passage_width : scalar
-        Width of the change between the first two, in blade passages.
+        Width of the change from `before_passage` to `after_passage`, in blade passages.
     inner_edge : scalar
         r/R inward of which the sheet belongs to the inner part altogether.
     """
@@ -37,11 +37,11 @@ class WakeLaw:
 
 @dataclasses.dataclass(frozen=True)
 class WakeGrid:
-    """Where the wake's nodes are: azimuths behind the blade, in steps that grow.
+    """Nodes of the wake: azimuths behind the blade, in steps that grow.
 
-    Six turns from 10 deg steps at the blade to 30 deg. Against sixteen turns at 2 to 10 deg, with
-    seven times the segments: thrust and torque within 0.15 %, in hover, where the wake leaves
-    slowly, 1.4 % and 0.9 % (docs/verification.md).
+    The default is six turns, in steps from 10 deg at the blade to 30 deg. Sixteen turns in steps of
+    2 to 10 deg, with seven times the segments, change thrust and torque by at most 0.15 %, but in
+    hover, where the wake leaves slowly, by 1.4 % and 0.9 % (docs/verification.md).
 
     Attributes
     ----------
@@ -64,7 +64,7 @@ class WakeGrid:
     last_step_deg: float = 30.0
 
     def __post_init__(self) -> None:
-        """Refuse steps of which no wake can be made."""
+        """Refuse lengths and steps that are not positive, and a growth below 1."""
         for name in ("turns", "first_step_deg", "last_step_deg"):
             value = getattr(self, name)
             if not 0.0 < value < float("inf"):

@@ -64,16 +64,16 @@ def boundary_layer(
     speed : array
         Speed of the flow over the section [m/s].
     angle_of_attack : array
-        Angle from zero lift [rad]. The side that is the suction side follows from its sign.
+        Angle from zero lift [rad]; its sign tells which side is the suction side.
     kinematic_viscosity : float
         Kinematic viscosity of the air [m^2/s].
     trip : {"none", "light", "heavy"}
-        Natural transition, or tripped near the leading edge (static).
+        Trip near the leading edge; "none" is natural transition (static).
 
     Returns
     -------
     BoundaryLayer
-        Thicknesses of the broadcast shape of the first three.
+        Thicknesses, of the shape to which chord, speed and angle broadcast.
 
     Notes
     -----
@@ -145,7 +145,7 @@ def absolute_degrees(angle_of_attack: ArrayLike) -> Array:
     Returns
     -------
     array
-        Its size [deg], rounded below 0.2 deg and 0.1 deg at zero.
+        Absolute angle [deg], rounded below 0.2 deg, so that it is 0.1 deg at zero.
     """
     return smooth_abs(jnp.rad2deg(angle_of_attack), _ANGLE_CORNER)
 

@@ -1,4 +1,4 @@
-"""Where a trailing edge sends its noise: directivity over the squared distance."""
+"""Directivity of the noise of a trailing edge over the squared distance."""
 
 from __future__ import annotations
 
@@ -19,9 +19,9 @@ class Radiation:
     Attributes
     ----------
     high : array
-        At high frequency, the chord being many wavelengths long: D_h / r_e^2.
+        D_h / r_e^2, at high frequency, the chord being many wavelengths long.
     low : array
-        At low frequency, a compact dipole: D_l / r_e^2. Only separated flow uses it.
+        D_l / r_e^2, at low frequency, a compact dipole; only separated flow uses it.
     """
 
     high: Array
@@ -36,7 +36,7 @@ def radiation(
     Parameters
     ----------
     chordwise, spanwise, normal : array
-        Components of the vector from the trailing edge, where it was at emission, to the observer:
+        Components of the vector from the trailing edge, at its place at emission, to the observer:
         along the chord (from leading to trailing edge), along the span, and normal to both [m].
     mach : array
         Mach number of the flow over the section.
@@ -44,7 +44,7 @@ def radiation(
     Returns
     -------
     Radiation
-        Of the broadcast shape.
+        Directivities, of the shape to which the arguments broadcast.
 
     References
     ----------

@@ -78,11 +78,11 @@ def rotor_self_noise(
     observers : (n_observers, 3) array
         Positions from the rotor centre, moving with it [m].
     frequency_hz : (n_bands,) array
-        Mid-band frequencies heard, see `third_octave_centers` [Hz].
+        Mid-band frequencies as the observers hear them, see `third_octave_centers` [Hz].
     model : SelfNoiseModel
         Trip of the boundary layer and planform of the tip (static).
     n_azimuths : int
-        Equal steps of the turn (static).
+        Number of equal steps in the turn (static).
 
     Returns
     -------

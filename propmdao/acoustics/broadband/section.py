@@ -1,4 +1,4 @@
-"""Sections of a blade, and what each mechanism makes of one before frequency and observer.
+"""Sections of a blade, and the part of each mechanism that knows no frequency or observer.
 
 Symbols and equation numbers are those of Brooks, Pope and Marcolini, NASA RP-1218 (1989).
 """
@@ -62,11 +62,11 @@ class TurbulentStrip(NamedTuple):
     level_p, level_s, level_alpha : array
         Peak levels of pressure side, suction side and separation, with 10 log10 delta* [dB].
     log_st_p, log_st_s, log_st_alpha : array
-        log10 of their Strouhal numbers over the peak's, at 1 Hz.
+        log10 of the Strouhal numbers of these three over the peak's, at 1 Hz.
     a_r, a_r_stalled, b_r : array
         Interpolation between the shapes at low and high Reynolds number.
     stalled : array
-        0 attached to 1 separated.
+        Share of the separated flow: 0 attached, 1 separated.
     """
 
     level_p: Array
@@ -106,9 +106,9 @@ class BluntStrip(NamedTuple):
     log_strouhal : array
         log10 of the Strouhal number over the peak's, at 1 Hz.
     wedge, plate : BluntCurve
-        Spectral curves between which the trailing edge lies.
+        Spectral curves of Psi = 14 and 0 deg, between which the trailing edge lies.
     edge_degrees : array
-        Psi [deg].
+        Angle Psi between the surfaces at the trailing edge [deg].
     """
 
     level: Array
@@ -124,11 +124,11 @@ def turbulent_strip(section: Section, layer: BoundaryLayer, air: Air) -> Turbule
     Parameters
     ----------
     section : Section
-        The strips.
+        Sections of the strips and the flow over them.
     layer : BoundaryLayer
-        Their boundary layer.
+        Boundary layer at the trailing edge of the strips.
     air : Air
-        The air.
+        The undisturbed air.
 
     Returns
     -------
@@ -167,11 +167,11 @@ def laminar_strip(section: Section, layer: BoundaryLayer, air: Air) -> LaminarSt
     Parameters
     ----------
     section : Section
-        The strips.
+        Sections of the strips and the flow over them.
     layer : BoundaryLayer
-        Their boundary layer.
+        Boundary layer at the trailing edge of the strips.
     air : Air
-        The air.
+        The undisturbed air.
 
     Returns
     -------
@@ -196,9 +196,9 @@ def blunt_strip(section: Section, layer: BoundaryLayer) -> BluntStrip:
     Parameters
     ----------
     section : Section
-        The strips.
+        Sections of the strips and the flow over them.
     layer : BoundaryLayer
-        Their boundary layer.
+        Boundary layer at the trailing edge of the strips.
 
     Returns
     -------

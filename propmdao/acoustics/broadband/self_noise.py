@@ -45,13 +45,13 @@ class SelfNoise:
     pressure_side, suction_side : array
         Turbulent boundary layers passing the trailing edge.
     separation : array
-        Angle-dependent part; beyond the stall all of the turbulent noise.
+        Angle-dependent part of the turbulent noise; beyond the stall all of it.
     laminar_shedding : array
         Vortex shedding of a laminar boundary layer.
     bluntness : array
         Vortex shedding of a blunt trailing edge.
     tip : array
-        Tip vortex.
+        Noise of the tip vortex.
     """
 
     pressure_side: Array
@@ -84,7 +84,7 @@ def third_octave_centers(lowest_hz: float = 100.0, highest_hz: float = 80e3) -> 
     Parameters
     ----------
     lowest_hz, highest_hz : float
-        Frequencies in the lowest and the highest band [Hz].
+        Any frequency in the lowest and any in the highest band [Hz].
 
     Returns
     -------
@@ -111,7 +111,7 @@ def trailing_edge_noise(
     frequency_hz : array
         Mid-band frequencies at the source, positive [Hz].
     section : Section
-        The strips.
+        Sections of the strips and the flow over them.
     layer : BoundaryLayer
         Boundary layer of the strips, by `boundary_layer` or by another model.
     radiated : Radiation
@@ -119,12 +119,12 @@ def trailing_edge_noise(
     air : Air
         The air; the report's levels have no term for its density.
     trip : {"none", "light", "heavy"}
-        A tripped boundary layer has no laminar vortex shedding (static).
+        Trip of the boundary layer; a tripped one has no laminar vortex shedding (static).
 
     Returns
     -------
     EdgeNoise
-        Mean squares of the shape to which frequency, section and radiation broadcast.
+        Mean squares [Pa^2], of the shape to which frequency, section and radiation broadcast.
 
     Notes
     -----
@@ -172,7 +172,7 @@ def tip_noise(
     frequency_hz : array
         Mid-band frequencies at the source, positive [Hz].
     section : Section
-        Section at the tip: its chord, speed and angle from zero lift, reduced by the tip's own
+        Section at the tip, of which chord, speed and angle from zero lift, reduced by the tip's own
         inflow, count.
     radiated : Radiation
         Directivity of the tip toward the observers, by `radiation`; only `high` counts.

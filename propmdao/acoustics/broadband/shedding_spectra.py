@@ -55,9 +55,9 @@ def laminar_reynolds_level(log_reynolds: Array, degrees: Array) -> Array:
     """
     log_loudest = 4.978 + 0.215 * degrees - (0.215 - 0.120) * ramp(degrees - 3.0, 0.25)
     x = jnp.abs(log_reynolds - log_loudest)
-    beyond = ramp(x - 0.245, _LOG_CORNER)
-    steep = -65.188 * beyond - (77.852 - 65.188) * ramp(x - 0.4898, _LOG_CORNER)
-    return -114.052 * (x - beyond) ** 2 + steep
+    excess = ramp(x - 0.245, _LOG_CORNER)
+    steep = -65.188 * excess - (77.852 - 65.188) * ramp(x - 0.4898, _LOG_CORNER)
+    return -114.052 * (x - excess) ** 2 + steep
 
 
 def laminar_angle_level(degrees: Array) -> Array:
@@ -89,7 +89,7 @@ def laminar_strouhal_peak(log_reynolds: Array, degrees: Array) -> Array:
     Returns
     -------
     array
-        log10 of St'_peak.
+        log10 of the peak Strouhal number St'_peak.
     """
     start = jnp.log10(1.3e5)
     end = start + jnp.log10(0.28 / 0.18) / 0.3931  # Re 4.0e5
@@ -110,7 +110,7 @@ def blunt_strouhal_peak(ratio: Array, edge_degrees: Array) -> Array:
     Returns
     -------
     array
-        St'''_peak.
+        Peak Strouhal number St'''_peak.
     """
     inverse = 1 / jnp.maximum(ratio, 0.15)  # not used below 0.19
     thick = (0.212 - 0.0045 * edge_degrees) / (1 + 0.235 * inverse - 0.0132 * inverse**2)
@@ -124,9 +124,9 @@ def blunt_level(ratio: Array, edge_degrees: Array) -> Array:
     Parameters
     ----------
     ratio : array
-        h / delta*, positive.
+        Trailing-edge thickness over the mean displacement thickness, h / delta*, positive.
     edge_degrees : array
-        Psi [deg].
+        Angle Psi between the surfaces at the trailing edge [deg].
 
     Returns
     -------
@@ -138,12 +138,13 @@ def blunt_level(ratio: Array, edge_degrees: Array) -> Array:
 
 
 class BluntCurve(NamedTuple):
-    """What the shape of bluntness noise needs to know of a strip.
+    """Parameters of the shape of bluntness noise, one set for each strip.
 
     Attributes
     ----------
     mu, m, eta_0 : array
-        Width, slope of the rising line, and where line and arc meet (equations 78 to 80).
+        Width, slope of the rising line, and the abscissa at which line and arc meet (equations 78
+        to 80).
     """
 
     mu: Array | float
@@ -157,12 +158,12 @@ def blunt_curve(ratio: Array) -> BluntCurve:
     Parameters
     ----------
     ratio : array
-        h / delta*; for Psi = 0 that of `plate_ratio`.
+        Ratio h / delta*; for Psi = 0 the one from `plate_ratio`.
 
     Returns
     -------
     BluntCurve
-        Its parameters.
+        Parameters of the curve.
     """
     # One ramp over all corners: (corners, ...) is a tenth of the code that eight of them make.
     corners = jnp.array([1.35 / 68.724, 0.25, 0.5, 0.62, 1.15, 1.2])
@@ -180,12 +181,12 @@ def plate_ratio(ratio: Array) -> Array:
     Parameters
     ----------
     ratio : array
-        h / delta*.
+        Trailing-edge thickness over the mean displacement thickness, h / delta*.
 
     Returns
     -------
     array
-        The ratio to be given to `blunt_curve`.
+        Ratio to be given to `blunt_curve`.
     """
     return 6.724 * ratio**2 - 4.019 * ratio + 1.107
 
@@ -198,14 +199,14 @@ def blunt_shape(eta: Array, wedge: BluntCurve, plate: BluntCurve, edge_degrees: 
     eta : array
         log10 of the Strouhal number over its peak value.
     wedge, plate : BluntCurve
-        Curves at 14 and 0 deg.
+        Curves of Psi = 14 and 0 deg.
     edge_degrees : array
-        Psi [deg].
+        Angle Psi between the surfaces at the trailing edge [deg].
 
     Returns
     -------
     array
-        Level [dB]. As in the report's program, neither above 0 nor above the curve of
+        Level [dB], which, as in the report's program, is neither above 0 nor above the curve of
         h / delta* = 0.25.
     """
     falling = _falling_flank(eta)

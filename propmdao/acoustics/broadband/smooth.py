@@ -17,14 +17,15 @@ def ramp(x: ArrayLike, half_width: ArrayLike) -> Array:
     Parameters
     ----------
     x : array
-        Any shape.
+        Values of any shape.
     half_width : float or array
-        Where the parabola ends, positive; it lies at most a quarter of this above the corner.
+        Distance from the corner at which the parabola ends, positive; the parabola lies at most a
+        quarter of this above the corner.
 
     Returns
     -------
     array
-        The same shape.
+        Values of the same shape.
     """
     x, w = jnp.asarray(x), jnp.asarray(half_width)
     inside = jnp.clip(x, -w, w)
@@ -37,14 +38,14 @@ def smooth_abs(x: ArrayLike, half_width: float) -> Array:
     Parameters
     ----------
     x : array
-        Any shape.
+        Values of any shape.
     half_width : float
-        Where the parabola ends.
+        Distance from the corner at which the parabola ends.
 
     Returns
     -------
     array
-        The same shape.
+        Values of the same shape.
     """
     inside = jnp.clip(x, -half_width, half_width)
     return (inside**2 / half_width + half_width) / 2 + jnp.maximum(jnp.abs(x) - half_width, 0.0)
@@ -56,14 +57,14 @@ def smooth_step(x: ArrayLike, half_width: float) -> Array:
     Parameters
     ----------
     x : array
-        Any shape.
+        Values of any shape.
     half_width : float
-        Where the step ends.
+        Distance from 0 at which the rise begins and ends.
 
     Returns
     -------
     array
-        The same shape.
+        Values of the same shape.
     """
     t = (jnp.clip(x, -half_width, half_width) / half_width + 1) / 2
     return t * t * (3 - 2 * t)

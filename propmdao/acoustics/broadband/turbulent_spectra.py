@@ -79,7 +79,7 @@ class Shape(NamedTuple):
         Returns
         -------
         array
-            A_R(a0) or B_R(b0): 0 at the lower curve, 1 at the higher one.
+            Factor A_R(a0) or B_R(b0): 0 at the lower curve, 1 at the higher one.
         """
         x = _between_reynolds(reynolds, *self.reference)
         low, high = self.level(x, jnp.asarray(0.0)), self.level(x, jnp.asarray(1.0))
@@ -91,8 +91,8 @@ class Shape(NamedTuple):
         root = jnp.sqrt(self.height - 886.788 * jnp.square(jnp.minimum(x, start)))
         c3, c2, c1, c0 = curve.cubic
         tail = ((c3 * x + c2) * x + c1) * x + c0
-        beyond = jnp.where(x < curve.end, slope * x + intercept, tail)
-        return jnp.where(x < start, root - self.offset, beyond)
+        line_and_cubic = jnp.where(x < curve.end, slope * x + intercept, tail)
+        return jnp.where(x < start, root - self.offset, line_and_cubic)
 
 
 #: Shape A of attached flow (equations 35, 36).
@@ -137,11 +137,11 @@ def strouhal_peaks(mach: Array, degrees: Array) -> tuple[Array, Array, Array]:
     Returns
     -------
     st1, st1_mean, st2 : array
-        Peaks of the pressure side, of the suction side and of the separation.
+        Peak Strouhal numbers of the pressure side, of the suction side and of the separation.
     """
     st1 = 0.02 * mach**-0.6
-    beyond = jnp.maximum(12.5 - ramp(12.5 - degrees, _ANGLE_CORNER) - 1.333, 0.0)
-    st2 = st1 * 10 ** (0.0054 * beyond**2)
+    excess = jnp.maximum(12.5 - ramp(12.5 - degrees, _ANGLE_CORNER) - 1.333, 0.0)
+    st2 = st1 * 10 ** (0.0054 * excess**2)
     return st1, (st1 + st2) / 2, st2
 
 
@@ -239,6 +239,6 @@ def stall_angle(mach: Array) -> Array:
     Returns
     -------
     array
-        Angle [deg]: gamma_0, at most 12.5.
+        Stall angle [deg]: gamma_0, at most 12.5.
     """
     return 12.5 - ramp(12.5 - stall_angle_of_ellipse(mach), _ANGLE_CORNER)

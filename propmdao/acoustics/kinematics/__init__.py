@@ -1,1 +1,1 @@
-"""How sources and observers move, and when what is emitted is heard."""
+"""Motion of sources and observers, and the times at which sound is emitted and heard."""

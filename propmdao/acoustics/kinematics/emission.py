@@ -1,4 +1,4 @@
-"""How far sound travels to observers that fly on meanwhile: the one root without iteration."""
+"""Distance that sound travels to observers who fly on meanwhile, without iteration."""
 
 from __future__ import annotations
 
@@ -11,13 +11,13 @@ from propmdao.records.pytrees import Scalar
 def emission_distance(ahead: Array, square: Array, mach_square: Scalar) -> Array:
     """Distance from a source at emission to an observer in uniform motion at reception.
 
-    It is the root of d = |D + M d| with the vector D from the source to the observer at emission,
-    and M the observer's velocity over the speed of sound.
+    The distance is the root of d = |D + M d|, with D the vector from the source to the observer at
+    emission and M the observer's velocity over the speed of sound.
 
     Parameters
     ----------
     ahead : array
-        Product M . D [m].
+        Scalar product M . D [m].
     square : array
         Squared distance at emission, D . D [m^2].
     mach_square : scalar
@@ -26,7 +26,7 @@ def emission_distance(ahead: Array, square: Array, mach_square: Scalar) -> Array
     Returns
     -------
     array
-        Distance d [m], the way of the sound.
+        Distance d that the sound travels [m].
 
     References
     ----------

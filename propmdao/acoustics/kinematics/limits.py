@@ -1,4 +1,4 @@
-"""What rotors, observers and air have to be for sound to be computed."""
+"""Limits of rotors, observers and air within which sound can be computed."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ def require_air(air: Air) -> None:
     Raises
     ------
     ValueError
-        If one of them is not positive.
+        If density or speed of sound is not positive.
     """
     for name, value, unit in (
         ("density", air.density, "kg/m3"),
@@ -60,14 +60,14 @@ def require_outside_rotor(positions: ArrayLike, tip_radius: float) -> None:
     Parameters
     ----------
     positions : (n_observers, 3) array_like
-        From the rotor centre [m].
+        Positions from the rotor centre [m].
     tip_radius : float
         Radius of the sphere around the rotor centre that holds all sources [m].
 
     Raises
     ------
     ValueError
-        If an observer is not outside that sphere, with its distance.
+        If an observer is not outside that sphere; the message has its distance.
     """
     radius = directions(np.reshape(positions, (-1, 3))).radius
     inside = np.flatnonzero(~(radius > tip_radius))

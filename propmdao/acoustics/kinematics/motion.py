@@ -27,16 +27,17 @@ class Frame:
     axis : (3,) array
         Unit vector of the rotation, in the outer frame.
     angle : scalar
-        Rotation at time 0, but for what swings [rad].
+        Rotation at time 0, without the swing [rad].
     rate : scalar
         Rotation rate [rad/s].
     offset, velocity, acceleration : (3,) arrays
-        Of the origin at time 0, in the outer frame [m], [m/s], [m/s^2].
+        Position, velocity and acceleration of the origin at time 0, in the outer frame [m], [m/s],
+        [m/s^2].
     swing : (2, n) array
-        What swings about the axis, as a blade flaps: factors of cos(k omega tau) and
-        sin(k omega tau), k = 1 ... n [rad].
+        Swing about the axis, as a blade flaps: factors of cos(k omega tau) and sin(k omega tau),
+        k = 1 ... n [rad].
     swing_rate : scalar
-        omega [rad/s].
+        Angular frequency omega of the swing [rad/s].
     """
 
     axis: Array
@@ -50,7 +51,7 @@ class Frame:
 
     @property
     def uniform(self) -> bool:
-        """Whether it neither turns nor accelerates."""
+        """Whether the frame neither turns nor accelerates."""
         return not (np.any(self.rate) or np.any(self.acceleration) or np.any(self.swing))
 
 
@@ -60,14 +61,15 @@ Motion = tuple[Frame, ...]
 
 @record
 class Poses:
-    """Where the innermost frame is at several times: y = origin + rotation x, and its derivatives.
+    """Places of the innermost frame at several times, y = origin + rotation x, and derivatives.
 
     Attributes
     ----------
     rotation, rotation_rate, rotation_acceleration : (n_times, 3, 3) arrays
-        R, dR/dtau [1/s] and d2R/dtau2 [1/s^2]; the columns of R are the frame's axes.
+        Rotation matrix R, dR/dtau [1/s] and d2R/dtau2 [1/s^2]; the columns of R are the frame's
+        axes.
     origin, velocity, acceleration : (n_times, 3) arrays
-        Of the frame's origin [m], [m/s], [m/s^2].
+        Position, velocity and acceleration of the frame's origin [m], [m/s], [m/s^2].
     """
 
     rotation: Array
@@ -96,12 +98,13 @@ def rotation(
     rate : float
         Rotation rate [rad/s], right-handed about the axis; negative turns the other way.
     swing, swing_rate
-        As in `Frame`; by default it does not swing.
+        Factors [rad] and angular frequency [rad/s] of the swing, see `Frame`; by default there is
+        none.
 
     Returns
     -------
     Frame
-        Origin at rest.
+        Frame whose origin is at rest.
 
     Raises
     ------
@@ -133,12 +136,13 @@ def translation(
     Parameters
     ----------
     offset, velocity, acceleration : (3,) array_like
-        In the outer frame [m], [m/s], [m/s^2].
+        Position, velocity and acceleration of the origin at time 0, in the outer frame [m], [m/s],
+        [m/s^2].
 
     Returns
     -------
     Frame
-        Without rotation.
+        Frame without rotation.
     """
     x, v, a = (np.asarray(q, float) for q in (offset, velocity, acceleration))
     still = np.zeros(())
@@ -155,14 +159,15 @@ def blade_motions(
     azimuths : (n_blades,) array_like
         Azimuth of each blade at time 0 [rad]; any spacing.
     rotation_speed : float
-        Omega [rad/s]; negative for a rotor that turns the other way (its blade is mirrored).
+        Rotation speed Omega [rad/s]; negative for a rotor that turns the other way (its blade is
+        mirrored).
     outer : Motion
-        Hub position, shaft tilt and flight of the rotor.
+        Frames outside the rotation: hub position, shaft tilt and flight of the rotor.
 
     Returns
     -------
     list of Motion
-        One per blade; blade 1 of the geometry lies along +x at azimuth 0.
+        Motion of each blade; blade 1 of the geometry lies along +x at azimuth 0.
     """
     z = (0.0, 0.0, 1.0)
     angles = np.atleast_1d(np.asarray(azimuths, float))
@@ -182,7 +187,7 @@ def poses(motion: Motion, times: ArrayLike) -> Poses:
     Returns
     -------
     Poses
-        At each time.
+        Position and orientation at each of the times.
     """
     tau = np.asarray(times, float)
     still = np.zeros((tau.size, 3, 3))
@@ -208,14 +213,14 @@ def place(pose: Poses, points: ArrayLike) -> tuple[Array, Array, Array]:
     Parameters
     ----------
     pose : Poses
-        Of the frame.
+        Positions and orientations of the frame.
     points : (n, 3) array_like
-        In the frame [m].
+        Positions of the points in the frame [m].
 
     Returns
     -------
     position, velocity, acceleration : (n_times, n, 3) arrays
-        On the ground [m], [m/s], [m/s^2].
+        Motion of the points on the ground [m], [m/s], [m/s^2].
     """
     x = np.asarray(points, float)
 

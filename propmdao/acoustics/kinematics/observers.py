@@ -1,4 +1,4 @@
-"""Where the microphones are: positions from the rotor centre, flying along with it.
+"""Microphones that fly along with the rotor: their positions from its centre.
 
 Directions have the names of the rotor's tests: elevation from the rotor plane, negative below it
 (the wake side), and azimuth about the rotor axis from the +x axis. Microphones on the ground are in
@@ -16,7 +16,7 @@ Positions = NDArray[np.float64]
 
 
 class Directions(NamedTuple):
-    """Where observers are, seen from the rotor centre; each an array of the positions' shape.
+    """Directions of observers from the rotor centre, arrays of the shape of the positions.
 
     Attributes
     ----------
@@ -33,12 +33,12 @@ class Directions(NamedTuple):
     azimuth_deg: NDArray[np.float64]
 
     def rounded(self) -> Directions:
-        """The same without what rounding leaves of zero: to 1e-9 m and deg.
+        """Directions rounded to 1e-9 m and deg, so that rounding errors of zero vanish.
 
         Returns
         -------
         Directions
-            For columns, tables and JSON.
+            Rounded directions for columns, tables and JSON.
         """
         # Adding zero makes a zero that has a sign one that has none.
         return Directions(*(np.round(values, 9) + 0.0 for values in self))
@@ -70,16 +70,20 @@ def point(radius: ArrayLike, elevation_deg: ArrayLike, azimuth_deg: ArrayLike = 
     r, elevation, azimuth = np.broadcast_arrays(
         *(np.atleast_1d(np.asarray(q, float)) for q in (radius, elevation_deg, azimuth_deg))
     )
-    for wrong in r[~((r > 0) & np.isfinite(r))]:
-        raise ValueError(f"observer radius must be positive and finite [m]; got {wrong:g}")
-    for wrong in elevation[~(np.abs(elevation) <= 90)]:
-        raise ValueError(f"observer elevation must be within -90 ... 90 deg; got {wrong:g}")
-    for wrong in azimuth[~np.isfinite(azimuth)]:
-        raise ValueError(f"observer azimuth must be finite [deg]; got {wrong:g}")
+    _require("radius must be positive and finite [m]", r, (r > 0) & np.isfinite(r))
+    _require("elevation must be within -90 ... 90 deg", elevation, np.abs(elevation) <= 90)
+    _require("azimuth must be finite [deg]", azimuth, np.isfinite(azimuth))
     el, az = np.radians(elevation), np.radians(azimuth)
     return np.stack(
         [r * np.cos(el) * np.cos(az), r * np.cos(el) * np.sin(az), r * np.sin(el)], axis=-1
     )
+
+
+def _require(rule: str, values: Positions, holds: NDArray[np.bool_]) -> None:
+    """Refuse observers of which a value does not keep the rule; the message has the first."""
+    wrong = values[~holds]
+    if wrong.size:
+        raise ValueError(f"observer {rule}; got {wrong[0]:g}")
 
 
 def arc(radius: ArrayLike, elevation_deg: ArrayLike) -> Positions:
@@ -113,9 +117,9 @@ def circle(radius: float, n: int, elevation_deg: float = 0.0) -> Positions:
     radius : float
         Distance from the rotor centre [m].
     n : int
-        How many.
+        Number of observers.
     elevation_deg : float
-        0 in the rotor plane, negative on a cone below it [deg].
+        Angle from the rotor plane [deg]: 0 in the plane, negative on a cone below it.
 
     Returns
     -------
@@ -125,7 +129,8 @@ def circle(radius: float, n: int, elevation_deg: float = 0.0) -> Positions:
     Raises
     ------
     ValueError
-        If there is none, or as in `point`.
+        If there is no observer, the radius is not positive or the elevation is outside
+        -90 ... 90 deg.
     """
     if n < 1:
         raise ValueError(f"a circle needs at least 1 observer; got {n}")
@@ -147,12 +152,14 @@ def sphere(radius: float, elevation_deg: ArrayLike, azimuth_deg: ArrayLike) -> P
     Returns
     -------
     (n_elevations * n_azimuths, 3) array
-        Positions [m], azimuths running fastest: levels there ``reshape(n_elevations, n_azimuths)``.
+        Positions [m], azimuths running fastest, so that levels at these observers take
+        ``reshape(n_elevations, n_azimuths)``.
 
     Raises
     ------
     ValueError
-        As in `point`.
+        If the radius is not positive, an elevation is outside -90 ... 90 deg or an azimuth is not
+        finite.
     """
     elevation, azimuth = np.meshgrid(elevation_deg, azimuth_deg, indexing="ij")
     return point(radius, elevation.ravel(), azimuth.ravel())
@@ -166,8 +173,8 @@ def hemisphere(radius: float, step_deg: float = 10.0) -> Positions:
     radius : float
         Distance from the rotor centre [m].
     step_deg : float
-        Between neighbours in elevation (-90 ... 0) and azimuth (0 ... 360, closed) [deg]; divides
-        90.
+        Step between neighbours in elevation (-90 ... 0) and azimuth (0 ... 360, closed) [deg], a
+        divisor of 90.
 
     Returns
     -------
@@ -177,7 +184,7 @@ def hemisphere(radius: float, step_deg: float = 10.0) -> Positions:
     Raises
     ------
     ValueError
-        If the step does not divide 90 deg, or as in `point`.
+        If the step does not divide 90 deg or the radius is not positive.
     """
     n = round(90 / step_deg) if step_deg > 0 else 0
     if n < 1 or abs(n * step_deg - 90) > 1e-9:
@@ -191,7 +198,7 @@ def grid(x: ArrayLike, y: ArrayLike, z: ArrayLike) -> Positions:
     Parameters
     ----------
     x, y, z : float or (n,) array_like
-        Coordinates [m]; a plane has one of a single value.
+        Coordinates [m]; on a plane one of the three is a single value.
 
     Returns
     -------
@@ -207,7 +214,7 @@ def directions(positions: ArrayLike) -> Directions:
     Parameters
     ----------
     positions : (..., 3) array_like
-        From the rotor centre [m].
+        Positions from the rotor centre [m].
 
     Returns
     -------
@@ -227,12 +234,12 @@ def labels(positions: ArrayLike) -> list[str]:
     Parameters
     ----------
     positions : (n_observers, 3) array_like
-        From the rotor centre [m].
+        Positions from the rotor centre [m].
 
     Returns
     -------
     list of str
-        Such as ``"-45°"``, or ``"-45°, azimuth 90°, 3 m"``.
+        Name of each observer, such as ``"-45°"``, or ``"-45°, azimuth 90°, 3 m"``.
     """
     seen = directions(np.reshape(positions, (-1, 3)))
     names = [f"{elevation:.4g}°" for elevation in seen.elevation_deg]

@@ -20,9 +20,9 @@ class Observers:
     Attributes
     ----------
     position : (n_observers, 3) array
-        On the ground at time 0 [m].
+        Positions on the ground at time 0 [m].
     velocity : (3,) array
-        Of all of them [m/s].
+        Velocity of all observers [m/s].
     """
 
     position: Array
@@ -35,19 +35,19 @@ def observer_clock(times: ArrayLike) -> tuple[NDArray[np.float64], float]:
     Parameters
     ----------
     times : (n_times,) array_like
-        Evenly spaced [s].
+        Evenly spaced observer times [s].
 
     Returns
     -------
     times : (n_times,) array
-        The same [s].
+        Observer times [s].
     step : float
-        Between them [s].
+        Step between the times [s].
 
     Raises
     ------
     ValueError
-        If they are fewer than two, do not increase or are not evenly spaced.
+        If there are fewer than two times, or they do not increase or are not evenly spaced.
     """
     clock = np.asarray(times, float)
     if clock.ndim != 1 or clock.size < 2 or not clock[1] > clock[0]:
@@ -72,25 +72,25 @@ def source_times(
     Parameters
     ----------
     motion : Motion
-        Of the points' frame.
+        Motion of the points' frame.
     points : (n, 3) array_like
-        In the frame [m].
+        Positions of the points in their frame [m].
     observers : Observers
-        Who listens.
+        Observers at rest or in uniform motion.
     times : (n_times,) array_like
         Observer times [s].
     sound_speed : float
-        [m/s].
+        Speed of sound [m/s].
     step : float, optional
-        At most that between source times [s]; that of the observer times by default.
+        Largest step between source times [s]; that of the observer times by default.
     multiple : int
-        The number of source times is rounded up to a multiple of this by a shorter step, so that
-        the blades of a rotor run the same compiled code.
+        Number to a multiple of which the number of source times is rounded up, so that the blades
+        of a rotor run the same compiled code.
 
     Returns
     -------
     (n_source_times,) array
-        Uniform [s].
+        Evenly spaced source times [s].
 
     Raises
     ------
@@ -148,27 +148,27 @@ def require_outside(
 ) -> None:
     """Refuse observers that come into the region which the sources sweep.
 
-    That region is the sphere around the hub that holds all of the points, the hub being what is
-    nearest to them on the axis of the fastest turning frame. Where nothing turns it is the box
-    around the points, along the axes of their frame.
+    The region is the sphere around the hub that holds all of the points; the hub is the point on
+    the axis of the fastest turning frame that is nearest to them. Where nothing turns, the region
+    is the box around the points, along the axes of their frame.
 
     Parameters
     ----------
     motion : Motion
-        Of the points' frame.
+        Motion of the points' frame.
     points : (n, 3) array_like
-        In the frame [m].
+        Positions of the points in their frame [m].
     observers : Observers
-        Who listens.
+        Observers at rest or in uniform motion.
     times : (n_times,) array_like
-        When [s]; looked at are 1000 of them, evenly spaced.
+        Observer times [s], of which at most 1000, evenly spaced, are looked at.
     name : str
-        Of the sources, to be named.
+        Name of the sources in messages.
 
     Raises
     ------
     ValueError
-        If an observer comes into the region: it names the distance from its centre.
+        If an observer comes into the region; the message has its distance from the centre.
     """
     clock = np.asarray(times, float)
     clock = np.linspace(clock[0], clock[-1], min(clock.size, 1000))
@@ -213,18 +213,18 @@ def sum_on_clock(
     arrival : (n_sources, n_source_times) array
         Reception times, increasing along the last axis [s].
     pressure : (n_sources, n_source_times) array
-        What is heard then [Pa].
+        Pressure that is heard at the reception times [Pa].
     start, step : float
         First observer time and their step [s].
     n : int
         Number of observer times (static).
     each : int
-        No two neighbours in `arrival` have more observer times between them (static).
+        Largest number of observer times between two neighbours in `arrival` (static).
 
     Returns
     -------
     (n,) array
-        Cubic (four-point) interpolation [Pa].
+        Pressure at the observer times by cubic (four-point) interpolation [Pa].
 
     Notes
     -----

@@ -19,14 +19,14 @@ from propmdao.records.pytrees import record
 
 @record
 class Sight:
-    """How observers hear a moving rotor, at each time of reception; arrays (n_observers, n_times).
+    """Line of sight to a moving rotor at each time of reception, arrays (n_observers, n_times).
 
     Attributes
     ----------
     emission_time : array
-        When the rotor centre emitted what is heard [s].
+        Time at which the rotor centre emitted the sound that is heard [s].
     distance : array
-        From there to the observer: the way of the sound [m].
+        Distance from the rotor centre at emission to the observer at reception [m].
     elevation_deg, azimuth_deg : array
         Direction in which the sound left, in the rotor's frame without its rotation [deg].
     doppler : array
@@ -46,12 +46,12 @@ def fixed_observers(positions: ArrayLike) -> Observers:
     Parameters
     ----------
     positions : (n_observers, 3) array_like
-        On the ground frame [m].
+        Positions on the ground frame [m].
 
     Returns
     -------
     Observers
-        Without velocity.
+        Observers without velocity.
     """
     return Observers(jnp.asarray(positions, float).reshape(-1, 3), jnp.zeros(3))
 
@@ -62,21 +62,21 @@ def ground_line(start: ArrayLike, end: ArrayLike, n: int, height: float = 0.0) -
     Parameters
     ----------
     start, end : (2,) array_like
-        x and y of the first and the last one [m].
+        Coordinates x and y of the first and the last microphone [m].
     n : int
-        How many.
+        Number of microphones.
     height : float
-        Above the ground [m]; 1.2 m in certification.
+        Height of the microphones above the ground [m]; 1.2 m in certification.
 
     Returns
     -------
     Observers
-        Standing still.
+        Observers that stand still.
 
     Raises
     ------
     ValueError
-        If there are fewer than two or they are below the ground.
+        If there are fewer than two microphones or they are below the ground.
     """
     if n < 2:
         raise ValueError(f"a line needs at least 2 observers; got {n}")
@@ -92,17 +92,17 @@ def flyover_track(height: float, speed: float, shaft_angle_deg: float = 90.0) ->
     Parameters
     ----------
     height : float
-        Of the rotor centre above the ground [m].
+        Height of the rotor centre above the ground [m].
     speed : float
-        Along +x [m/s].
+        Flight speed along +x [m/s].
     shaft_angle_deg : float
-        From the vertical, forward, to the rotor axis [deg]: 90 for a propeller, whose axis is the
-        direction of flight, 0 for a lifting rotor.
+        Angle from the vertical forward to the rotor axis [deg]: 90 for a propeller, whose axis is
+        the direction of flight, 0 for a lifting rotor.
 
     Returns
     -------
     Motion
-        The rotor's frame without its rotation: the `outer` of `blade_motions`.
+        Motion of the rotor's frame without its rotation: the `outer` of `blade_motions`.
 
     Raises
     ------
@@ -120,23 +120,23 @@ def flyover_track(height: float, speed: float, shaft_angle_deg: float = 90.0) ->
 def line_of_sight(
     motion: Motion, observers: Observers, times: ArrayLike, sound_speed: float
 ) -> Sight:
-    """From where, when and how a moving rotor is heard: labels, distances and Doppler of a flyover.
+    """Directions, distances, emission times and Doppler factors at which a moving rotor is heard.
 
     Parameters
     ----------
     motion : Motion
-        Of the rotor's frame, without the rotation of the blades.
+        Motion of the rotor's frame, without the rotation of the blades.
     observers : Observers
-        Who listens.
+        Observers at rest or in uniform motion.
     times : (n_times,) array_like
-        When [s].
+        Observer times [s].
     sound_speed : float
-        [m/s].
+        Speed of sound [m/s].
 
     Returns
     -------
     Sight
-        For the rotor centre.
+        Line of sight from the rotor centre to each observer at each time.
 
     Raises
     ------
@@ -144,8 +144,8 @@ def line_of_sight(
         If the rotor centre or the observers are not slower than sound.
     """
     t = np.asarray(times, float)
-    start, along = (np.asarray(q, float) for q in (observers.position, observers.velocity))
-    heard_at = start[:, None] + along * t[:, None]  # (n_observers, n_times, 3)
+    start, velocity = (np.asarray(q, float) for q in (observers.position, observers.velocity))
+    heard_at = start[:, None] + velocity * t[:, None]  # (n_observers, n_times, 3)
 
     tau = np.broadcast_to(t, heard_at.shape[:2])
     for _ in range(40):
@@ -159,7 +159,7 @@ def line_of_sight(
         if np.abs(late).max() < 1e-12 * (1 + np.abs(t).max()):
             break
         tau = tau - late / (1 - m_r)  # Newton; d / dtau = 1 - M_r
-    observer_mach = np.einsum("i,oti->ot", along, toward) / (sound_speed * d)
+    observer_mach = np.einsum("i,oti->ot", velocity, toward) / (sound_speed * d)
     if not np.all(np.abs(observer_mach) < 1):
         raise ValueError(
             f"observers must be slower than sound ({sound_speed:g} m/s); "

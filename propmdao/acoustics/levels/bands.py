@@ -1,6 +1,6 @@
 """Third octaves: tones and spectra put into bands, and bands spread over a spectrum again.
 
-All works on mean-square pressures, for those add: `decibels.mean_square` makes them from
+All functions work on mean-square pressures, for those add: `decibels.mean_square` makes them from
 amplitudes, `decibels.level_db` makes levels of them.
 """
 
@@ -27,16 +27,16 @@ def tones_in_bands(frequency_hz: ArrayLike, mean_square: ArrayLike, center_hz: A
     Parameters
     ----------
     frequency_hz : (n_tones,) array
-        Frequencies [Hz].
+        Frequencies of the tones [Hz].
     mean_square : (..., n_tones) array
-        Mean-square pressures [Pa^2].
+        Mean-square pressures of the tones [Pa^2].
     center_hz : (n_bands,) array
         Mid-band frequencies [Hz], see `broadband.third_octave_centers`.
 
     Returns
     -------
     (..., n_bands) array
-        Mean-square pressures [Pa^2]; tones outside all bands are in none.
+        Mean-square pressures of the bands [Pa^2]; tones outside all bands are left out.
 
     Notes
     -----
@@ -53,9 +53,9 @@ def tones_in_bins(frequency_hz: ArrayLike, mean_square: ArrayLike, bin_hz: Array
     Parameters
     ----------
     frequency_hz : (n_tones,) array
-        Frequencies [Hz].
+        Frequencies of the tones [Hz].
     mean_square : (..., n_tones) array
-        Mean-square pressures [Pa^2].
+        Mean-square pressures of the tones [Pa^2].
     bin_hz : (n_bins,) array
         Frequencies of the bins, multiples of their width [Hz].
 
@@ -81,7 +81,7 @@ def third_octaves_of_spectrum(
     Parameters
     ----------
     frequency_hz : (n_bins,) array
-        Evenly spaced, the first one at least half a bin above 0 [Hz].
+        Frequencies of the bins, evenly spaced, the first one at least half a bin above 0 [Hz].
     mean_square : (..., n_bins) array
         Mean-square pressure of each bin [Pa^2].
 
@@ -95,7 +95,7 @@ def third_octaves_of_spectrum(
     Raises
     ------
     ValueError
-        If the bins are not as described.
+        If the bins are not evenly spaced or start less than half a bin above 0.
     """
     bins = np.asarray(frequency_hz, float)
     edges = _bin_edges(bins)
@@ -120,7 +120,7 @@ def bands_in_bins(
     mean_square : (..., n_bands) array_like
         Mean-square pressures [Pa^2].
     bin_hz : (n_bins,) array_like
-        Evenly spaced frequencies, the first one at least half a bin above 0 [Hz].
+        Frequencies of the bins, evenly spaced, the first one at least half a bin above 0 [Hz].
 
     Returns
     -------
@@ -130,7 +130,7 @@ def bands_in_bins(
     Raises
     ------
     ValueError
-        If the bands are not neighbours, the bins wider than a band or not over all of the bands.
+        If the bands are not neighbours, the bins are wider than a band or do not cover the bands.
     """
     center = np.asarray(center_hz, float)
     number = np.round(10 * np.log10(center / 1000))
@@ -151,7 +151,7 @@ def bands_in_bins(
             f"{low:.4g} to {high:.4g} Hz"
         )
     wanted = np.asarray(mean_square, float)
-    spread = [_spread(center, one, bins, edges) for one in wanted.reshape(-1, center.size)]
+    spread = [_spread(center, levels, bins, edges) for levels in wanted.reshape(-1, center.size)]
     return np.reshape(spread, (*wanted.shape[:-1], bins.size))
 
 
@@ -242,7 +242,7 @@ def third_octave(
     Parameters
     ----------
     frequency_hz : (n_harmonics,) array
-        Frequencies [Hz].
+        Frequencies of the tones [Hz].
     amplitude : (..., n_harmonics) complex array
         Amplitudes P_m [Pa].
 
@@ -259,15 +259,15 @@ def third_octave(
     IEC 61260-1:2014: base-ten mid-band and band-edge frequencies.
     """
     frequency, energy = np.asarray(frequency_hz), np.asarray(mean_square(amplitude))
-    heard = frequency > 0
-    number = np.asarray(band_number(frequency[heard]))
+    turning = frequency > 0
+    number = np.asarray(band_number(frequency[turning]))
     bands, band_of_tone = np.unique(number, return_inverse=True)
     membership = np.eye(bands.size)[band_of_tone]
-    return 1000 * 10 ** (bands / 10), np.asarray(level_db(energy[..., heard] @ membership))
+    return 1000 * 10 ** (bands / 10), np.asarray(level_db(energy[..., turning] @ membership))
 
 
 def band_number(frequency_hz: ArrayLike) -> Array:
-    """Which third octave holds a frequency: k of the band around 1000 * 10**(k/10) Hz.
+    """Number of the third octave that holds a frequency: k of the band around 1000 * 10**(k/10) Hz.
 
     Parameters
     ----------
@@ -277,7 +277,7 @@ def band_number(frequency_hz: ArrayLike) -> Array:
     Returns
     -------
     array
-        Whole numbers, as floats; the lower edge belongs to the band. Steps have no slope: the
+        Whole band numbers, as floats; the lower edge belongs to the band. Steps have no slope: the
         derivative is zero.
 
     References

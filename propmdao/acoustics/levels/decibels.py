@@ -61,7 +61,7 @@ def energy_sum_db(level_db: ArrayLike, axis: int = -1) -> Array:
     level_db : array
         Levels [dB].
     axis : int
-        Along which to add.
+        Axis along which the sounds are added.
 
     Returns
     -------
@@ -79,7 +79,7 @@ def pressure_history(
     Parameters
     ----------
     frequency_hz : (n_harmonics,) array
-        Frequencies, multiples of the first [Hz].
+        Frequencies of the tones, multiples of the first [Hz].
     amplitude : (..., n_harmonics) complex array
         Amplitudes P_m [Pa].
     n_times : int
@@ -88,7 +88,7 @@ def pressure_history(
     Returns
     -------
     time : (n_times,) array
-        From 0 up to, not including, the passage 1 / f_1 [s].
+        Times from 0 up to, not including, the passage 1 / f_1 [s].
     pressure : (..., n_times) array
         Pressure without its mean [Pa].
 

@@ -21,7 +21,7 @@ _REFERENCE_DURATION = 10.0  # s
 
 @dataclass(frozen=True)
 class EffectivePerceivedNoise:
-    """Effective perceived noise level of a flyover and how it came about.
+    """Effective perceived noise level of a flyover, with the histories behind it.
 
     Attributes
     ----------
@@ -32,7 +32,7 @@ class EffectivePerceivedNoise:
     pnl, tone_correction, pnlt : (n_times,) arrays
         Perceived noise level [PNdB], its correction for tones [dB] and their sum.
     first, last : int
-        The times between which PNLT counts, both included: 10 dB below the maximum.
+        Numbers of the times, both included, between which PNLT counts: 10 dB below the maximum.
     """
 
     epnl: float
@@ -76,9 +76,9 @@ def effective_perceived_noise_level(
     Parameters
     ----------
     level_db : (n_times, 24) array_like
-        Band levels [dB re 20 uPa] at equal steps.
+        Band levels [dB re 20 uPa] at equal steps of time.
     step : float
-        Between them [s]: 0.5 in certification.
+        Step between the spectra [s]: 0.5 in certification.
 
     Returns
     -------
@@ -124,17 +124,17 @@ def integrated_level(
     pnlt : (n_times,) array_like
         Tone-corrected perceived noise level [PNdB].
     duration : float or (n_times,) array_like
-        What each of them stands for [s].
+        Time that each of the values stands for [s].
     maximum : float
-        PNLTM [PNdB].
+        Maximum of PNLT, band-sharing adjustment included, PNLTM [PNdB].
 
     Returns
     -------
     level : float
-        [EPNdB].
+        Effective perceived noise level [EPNdB].
     first, last : int
-        The values nearest to 10 dB below the maximum, the first and the last of them; both and
-        all between them count.
+        Numbers of the first and the last value nearest to 10 dB below the maximum; both and all
+        between them count.
 
     Raises
     ------

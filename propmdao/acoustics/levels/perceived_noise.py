@@ -1,7 +1,7 @@
 """Perceived noise of aircraft at an instant: noys, PNL and the correction for tones.
 
 Levels are third octaves in the 24 bands from 50 Hz to 10 kHz, `PERCEIVED_BANDS_HZ`, along the last
-axis. No library of this that is kept runs on all of the Pythons of this package.
+axis. No maintained library of this runs on all of the Pythons of this package.
 
 References
 ----------
@@ -60,7 +60,7 @@ def perceived_noisiness(level_db: ArrayLike) -> Floats:
     Returns
     -------
     (..., 24) array
-        In noys; 0 for what is not heard.
+        Noisiness in noys; 0 for bands that are not heard.
 
     References
     ----------
@@ -90,7 +90,7 @@ def perceived_noise_level(level_db: ArrayLike) -> Floats:
     Returns
     -------
     (...,) array
-        In PNdB; 0 where nothing is heard.
+        Perceived noise level [PNdB]; 0 where nothing is heard.
 
     References
     ----------
@@ -112,13 +112,14 @@ def tone_correction(level_db: ArrayLike) -> Floats:
     Returns
     -------
     (...,) array
-        The largest of the bands' factors C, 0 to 6 2/3 dB. Bands that are not heard have none.
+        Correction, the largest of the bands' factors C, 0 to 6 2/3 dB. Bands that are not heard
+        have none.
 
     Notes
     -----
-    To this procedure the edge of a spectrum that stops short of 10 kHz is a tone: predictions
-    without broadband noise get what their tones deserve, broadband noise cut off below 10 kHz
-    does not.
+    The procedure takes the edge of a spectrum that stops short of 10 kHz for a tone. Predictions
+    without broadband noise are corrected as their tones deserve; broadband noise that is cut off
+    below 10 kHz is not.
 
     References
     ----------
@@ -132,8 +133,8 @@ def tone_correction(level_db: ArrayLike) -> Floats:
     factor = weight * np.select(
         [excess < 1.5, excess < 3, excess < 20], [0.0, 2 * excess / 3 - 1, excess / 3], 20 / 3
     )
-    heard = perceived_noisiness(level)[..., _FIRST_TONE_BAND:] > 0
-    return np.where(heard, factor, 0.0).max(axis=-1)
+    audible = perceived_noisiness(level)[..., _FIRST_TONE_BAND:] > 0
+    return np.where(audible, factor, 0.0).max(axis=-1)
 
 
 def tone_background(level_db: ArrayLike) -> Floats:
@@ -147,7 +148,7 @@ def tone_background(level_db: ArrayLike) -> Floats:
     Returns
     -------
     (..., 22) array
-        From 80 Hz on [dB re 20 uPa].
+        Band levels from 80 Hz on [dB re 20 uPa].
 
     References
     ----------

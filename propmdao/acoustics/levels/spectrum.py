@@ -16,19 +16,19 @@ def narrowband(
     Parameters
     ----------
     pressure : (..., n_times) array_like
-        Record [Pa]; its mean is no sound and is left out.
+        Record of the pressure [Pa]; its mean is no sound and is left out.
     sample_rate : float
-        [Hz].
+        Samples per second [Hz].
     bin_width_hz : float
-        [Hz]; the nearest that a whole number of samples gives.
+        Bin width [Hz]; the nearest that a whole number of samples gives is taken.
     window : str
-        Of `scipy.signal.get_window`: "hann", or "boxcar" for records whose tones fit a whole number
-        of times into 1 / bin width.
+        Window of `scipy.signal.get_window`: "hann", or "boxcar" for records whose tones fit a whole
+        number of times into 1 / bin width.
 
     Returns
     -------
     frequency_hz : (n_bins,) array
-        From one bin width up to half the sample rate [Hz].
+        Frequencies from one bin width up to half the sample rate [Hz].
     mean_square : (..., n_bins) array
         Mean-square pressure in each bin [Pa^2]: the bins together hold that of the record. A tone
         is spread over three bins by "hann", the highest of which has up to 2/3 of it.
@@ -60,16 +60,17 @@ def third_octaves_of_record(
     Parameters
     ----------
     pressure : (..., n_times) array_like
-        Record [Pa].
+        Record of the pressure [Pa].
     sample_rate : float
-        [Hz].
+        Samples per second [Hz].
 
     Returns
     -------
     center_hz : (n_bands,) array
         Exact mid-band frequencies up to half the sample rate [Hz].
     mean_square : (..., n_bands) array
-        Mean-square pressures [Pa^2]; together that of the record without its mean.
+        Mean-square pressures of the bands [Pa^2]; together they hold that of the record without its
+        mean.
     """
     resolution = sample_rate / np.shape(pressure)[-1]
     return third_octaves_of_spectrum(*narrowband(pressure, sample_rate, resolution, "boxcar"))

@@ -1,6 +1,6 @@
 """Levels of pressure records over time: time weighting, short-time levels, sound exposure.
 
-A flyover is loud for a while; these say when, and how much of it was heard in all.
+A flyover is loud for a while: these levels tell when, and how much of it was heard in all.
 """
 
 from __future__ import annotations
@@ -26,9 +26,9 @@ def a_weighted(pressure: ArrayLike, sample_rate: float) -> Floats:
     Parameters
     ----------
     pressure : (..., n_times) array_like
-        Record, taken to repeat itself [Pa].
+        Record of the pressure, taken to repeat itself [Pa].
     sample_rate : float
-        [Hz].
+        Samples per second [Hz].
 
     Returns
     -------
@@ -48,11 +48,11 @@ def time_weighted_level_db(
     Parameters
     ----------
     pressure : (..., n_times) array_like
-        Record; before it, there is silence [Pa].
+        Record of the pressure; before it, there is silence [Pa].
     sample_rate : float
-        [Hz].
+        Samples per second [Hz].
     time_constant : float
-        Of the exponential average, `FAST` or `SLOW` [s].
+        Time constant of the exponential average, `FAST` or `SLOW` [s].
 
     Returns
     -------
@@ -78,9 +78,9 @@ def short_time_level_db(
     Parameters
     ----------
     pressure : (..., n_times) array_like
-        Record [Pa]; what is left after the last whole slice does not count.
+        Record of the pressure [Pa]; the rest after the last whole slice does not count.
     sample_rate : float
-        [Hz].
+        Samples per second [Hz].
     step : float
         Length of a slice [s].
 
@@ -94,7 +94,7 @@ def short_time_level_db(
     Raises
     ------
     ValueError
-        If there is not one slice, or a slice has no sample.
+        If the record is shorter than a slice, or a slice has no sample.
     """
     p = np.asarray(pressure, float)
     each, n = _slices(p.shape[-1], sample_rate, step)
@@ -113,9 +113,9 @@ def third_octave_history(
     Parameters
     ----------
     pressure : (..., n_times) array_like
-        Record [Pa]; what is left after the last whole slice does not count.
+        Record of the pressure [Pa]; the rest after the last whole slice does not count.
     sample_rate : float
-        [Hz].
+        Samples per second [Hz].
     center_hz : (n_bands,) array_like
         Mid-band frequencies [Hz].
     step : float
@@ -126,12 +126,14 @@ def third_octave_history(
     time : (n_slices,) array
         Middle of each slice, from the beginning of the record [s].
     mean_square : (..., n_slices, n_bands) array
-        Mean-square pressures [Pa^2]; over all slices and neighbouring bands, that of the record.
+        Mean-square pressures [Pa^2]; over all slices and neighbouring bands they give that of the
+        record.
 
     Raises
     ------
     ValueError
-        If a band is above half the sample rate, or as in `short_time_level_db`.
+        If a band is above half the sample rate, the record is shorter than a slice, or a slice has
+        no sample.
     """
     p = np.asarray(pressure, float)
     each, n = _slices(p.shape[-1], sample_rate, step)
@@ -159,7 +161,7 @@ def third_octave_history(
 
 
 def sound_exposure_level_db(level_db: ArrayLike, step: float) -> Floats:
-    """Level of the one second that is as loud as the whole event; SEL of A-weighted levels.
+    """Level of one second that has the energy of the whole event; SEL of A-weighted levels.
 
     Parameters
     ----------

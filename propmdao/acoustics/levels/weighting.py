@@ -15,7 +15,7 @@ def oaspl_dba(frequency_hz: ArrayLike, amplitude: ArrayLike) -> Array:
     Parameters
     ----------
     frequency_hz : (n_harmonics,) array
-        Frequencies [Hz].
+        Frequencies of the tones [Hz].
     amplitude : (..., n_harmonics) complex array
         Amplitudes P_m [Pa].
 
@@ -56,7 +56,7 @@ def a_weighting(frequency_hz: ArrayLike) -> Array:
     Returns
     -------
     array
-        The same shape; ``20 log10`` of it is the weighting in dB.
+        Factor, of the shape of the frequencies; ``20 log10`` of it is the weighting in dB.
 
     References
     ----------

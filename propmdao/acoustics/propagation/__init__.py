@@ -1,1 +1,1 @@
-"""What the way to the observer does to sound: absorption by air, reflection by ground."""
+"""Sound on its way to the observer: absorption by air, reflection by ground."""

@@ -21,12 +21,12 @@ def absorption_db_per_m(frequency_hz: ArrayLike, air: Air) -> Array:
     frequency_hz : array
         Frequencies [Hz], any shape.
     air : Air
-        State of the air; the standard gives 10 % in alpha from -20 to 50 degrees Celsius.
+        State of the air; the standard states alpha to 10 % from -20 to 50 degrees Celsius.
 
     Returns
     -------
     array
-        alpha [dB/m], the same shape.
+        Attenuation alpha [dB/m], of the shape of the frequencies.
 
     References
     ----------
@@ -52,24 +52,26 @@ def absorb(mean_square: ArrayLike, frequency_hz: ArrayLike, distance: ArrayLike,
     mean_square : (..., n) array
         Mean-square pressures [Pa^2] without absorption.
     frequency_hz : (n,) or (..., n) array
-        Frequencies, of third octaves the mid-band ones, as fixed observers hear them [Hz].
+        Frequencies (mid-band frequencies of third octaves) as fixed observers hear them [Hz].
     distance : (...,) array
-        Way of the sound from emission to reception [m].
+        Distance that the sound travels from emission to reception [m].
     air : Air
         State of the air.
 
     Returns
     -------
     (..., n) array
-        Mean-square pressures [Pa^2].
+        Mean-square pressures after the way through the air [Pa^2].
 
     Notes
     -----
     A band is treated as a tone in its middle. Its lower half comes through better than that: a
     quarter of a decibel more where the middle loses 15 dB, 1.2 dB where it loses 30 dB.
     """
-    way = jnp.asarray(distance, float)[..., None]
-    return jnp.asarray(mean_square) * 10 ** (-0.1 * absorption_db_per_m(frequency_hz, air) * way)
+    travelled = jnp.asarray(distance, float)[..., None]
+    return jnp.asarray(mean_square) * 10 ** (
+        -0.1 * absorption_db_per_m(frequency_hz, air) * travelled
+    )
 
 
 def absorb_tones(tones: Tones, distance: ArrayLike, air: Air, doppler: ArrayLike = 1.0) -> Tones:
@@ -80,7 +82,7 @@ def absorb_tones(tones: Tones, distance: ArrayLike, air: Air, doppler: ArrayLike
     tones : Tones
         Tones at (n_observers,) without absorption.
     distance : (n_observers,) array
-        Way of the sound from emission to reception [m].
+        Distance that the sound travels from emission to reception [m].
     air : Air
         State of the air.
     doppler : float or (n_observers,) array
@@ -91,7 +93,7 @@ def absorb_tones(tones: Tones, distance: ArrayLike, air: Air, doppler: ArrayLike
     Tones
         Attenuated tones; the phase is not changed, for the dispersion of air is below 0.1 m/s.
     """
-    way = jnp.asarray(distance, float)[..., None]
+    travelled = jnp.asarray(distance, float)[..., None]
     frequency_hz = tones.frequency_hz * jnp.asarray(doppler, float)[..., None]
-    factor = 10 ** (-0.05 * absorption_db_per_m(frequency_hz, air) * way)
+    factor = 10 ** (-0.05 * absorption_db_per_m(frequency_hz, air) * travelled)
     return tones.each(lambda amplitude: amplitude * factor)

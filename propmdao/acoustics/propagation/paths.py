@@ -1,8 +1,8 @@
 """Ground that reflects and air that absorbs, around a rotor and its observers.
 
-Observers fly along with the rotor here, as they do for `tones` and `rotor_self_noise`; sound has
-one way to them or, over ground, two: what is heard is computed at the ends of all ways
-(`sound_paths`) and put together again.
+Observers fly along with the rotor here, as they do for `tones` and `rotor_self_noise`. Sound has
+one way to them or, over ground, two: noise is computed at the ends of all ways (`sound_paths`) and
+put together again.
 """
 
 from __future__ import annotations
@@ -32,19 +32,19 @@ Floats = NDArray[np.float64]
 
 
 def sound_paths(positions: ArrayLike, surroundings: Surroundings) -> Floats:
-    """Ends of the ways from the rotor to its observers: where they are and where mirrored.
+    """Ends of the ways from the rotor to its observers: the observers and their mirror images.
 
     Parameters
     ----------
     positions : (n_observers, 3) array
         Positions from the rotor centre, in its axes [m].
     surroundings : Surroundings
-        Ground, or none.
+        Ground around the rotor, or none.
 
     Returns
     -------
     (n_ways, n_observers, 3) array
-        Two ways where the ground is at a height, otherwise one [m].
+        Ends of two ways where the ground is at a height, otherwise of one [m].
 
     Raises
     ------
@@ -85,7 +85,7 @@ def tones_by_paths(
     Returns
     -------
     Tones
-        Tones at the (n_observers,).
+        Tones at the n_observers observers.
 
     Raises
     ------
@@ -127,7 +127,7 @@ def bands_by_paths(
     Returns
     -------
     (n_observers, n_bands) array
-        Mean squares [Pa^2].
+        Mean squares of all ways together [Pa^2].
 
     Raises
     ------
@@ -156,7 +156,7 @@ def way_flying_along(positions: ArrayLike, mach: Scalar) -> tuple[Array, Array]:
     Parameters
     ----------
     positions : (..., 3) array
-        Positions from the source, at the same time [m].
+        Positions from the source, observer and source taken at the same time [m].
     mach : float
         Mach number of the flight, below 1.
 
@@ -165,7 +165,7 @@ def way_flying_along(positions: ArrayLike, mach: Scalar) -> tuple[Array, Array]:
     distance : (...,) array
         Distance from the source at emission to the observer at reception [m].
     doppler : (...,) array
-        Frequency in the air at rest over that which the observers hear, who move like the source.
+        Frequency in the air at rest over that which the observers, who move like the source, hear.
     """
     x = jnp.asarray(positions, float)
     d = emission_distance(mach * x[..., 2], jnp.sum(x**2, axis=-1), mach**2)

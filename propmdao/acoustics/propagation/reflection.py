@@ -1,4 +1,4 @@
-"""Reflection by hard ground: what is heard here and at the mirrored place, together."""
+"""Reflection by hard ground: the sound at the observer and at the mirrored place, together."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from propmdao.acoustics.signals import Tones
 def mirrored(
     positions: ArrayLike, height: ArrayLike, up: tuple[float, float, float] = (0.0, 0.0, 1.0)
 ) -> Array:
-    """Images of observers in a hard, plane ground: what they hear is what the ground reflects.
+    """Images of observers in a hard, plane ground, which hear what the ground reflects.
 
     A rotor and its image below the ground are heard here as the rotor alone is heard here and at
     the mirrored place: so reflection needs no second rotor, but the same sources at twice as many
@@ -23,17 +23,18 @@ def mirrored(
     Parameters
     ----------
     positions : (..., 3) array
-        Observers [m], from the rotor centre or, with height 0, from a point of the ground.
+        Positions of the observers [m], from the rotor centre or, with height 0, from a point of the
+        ground.
     height : float
         Height of the origin above the ground [m].
     up : (3,) sequence
         Unit vector away from the ground, in the axes of `positions`: the default is for a rotor
-        that hovers; a propeller in level flight has it across its axis.
+        that hovers; for a propeller in level flight it is perpendicular to the rotor axis.
 
     Returns
     -------
     (..., 3) array
-        Mirrored positions [m].
+        Mirrored positions of the observers [m].
     """
     x, n = jnp.asarray(positions, float), jnp.asarray(up, float)
     return x - 2 * (x @ n + height)[..., None] * n
@@ -56,7 +57,7 @@ def bands_with_reflection(
     Returns
     -------
     (..., n_bands) array
-        Mean squares [Pa^2].
+        Mean squares of both ways together [Pa^2].
 
     Notes
     -----
@@ -81,6 +82,6 @@ def on_hard_ground(tones: Tones) -> Tones:
     Returns
     -------
     Tones
-        Tones with it. Mean squares of broadband noise are four times as high there.
+        Tones with the ground. Mean squares of broadband noise are four times as high there.
     """
     return tones + tones

@@ -1,8 +1,8 @@
 """Sound that changes slowly: noise with changing bands, records filtered by changing air.
 
-Frames of two steps, one for each step, fade into each other by sines, whose squares add up to one:
-so the energies of noises that are not correlated do, and what is faded on its way in and out again
-is the record itself.
+Frames of two steps, one for each step, fade into each other by sines, whose squares add up to one.
+So the energies of uncorrelated noises add up, too, and a record that is faded on its way in and
+again on its way out is the record itself.
 """
 
 from __future__ import annotations
@@ -31,11 +31,11 @@ def changing_noise(
     mean_square : (n_steps, n_bands) array_like
         Mean squares in the middle of each step [Pa^2].
     each : int
-        Samples of a step, even.
+        Number of samples in a step, even.
     sample_rate : int
-        [Hz].
+        Samples per second [Hz].
     seed : int
-        Another one gives another noise of the same spectrum.
+        Seed of the random noise; another seed gives another noise of the same spectrum.
 
     Returns
     -------
@@ -45,13 +45,14 @@ def changing_noise(
     Raises
     ------
     ValueError
-        As in `broadband_record`.
+        If all bands reach above half the sample rate, or the frames are too short to resolve the
+        lowest band.
     """
     bands = np.asarray(mean_square, float)
     noise = broadband_record(center_hz, bands, 2 * each, sample_rate, seed)
     record = np.zeros((len(bands) + 1) * each)
-    for frame, window, of_step in zip(*_frames(len(bands), each), noise, strict=False):
-        record[frame] += window * of_step
+    for frame, window, step_noise in zip(*_frames(len(bands), each), noise, strict=False):
+        record[frame] += window * step_noise
     return record[each // 2 : -(each // 2)]
 
 
@@ -63,27 +64,27 @@ def absorbed_record(
     Parameters
     ----------
     pressure : (n_steps * each,) array_like
-        As it would be heard without absorption [Pa].
+        Pressure as it would be heard without absorption [Pa].
     distance : (n_steps,) array_like
-        Way of the sound that is heard in the middle of each step [m].
+        Distance travelled by the sound that is heard in the middle of each step [m].
     air : Air
-        Its state.
+        State of the air.
     each : int
-        Samples of a step, even.
+        Number of samples in a step, even.
     sample_rate : int
-        [Hz].
+        Samples per second [Hz].
 
     Returns
     -------
     (n_steps * each,) array
         Pressure [Pa].
     """
-    ways = np.asarray(distance, float)
+    lengths = np.asarray(distance, float)
     padded = np.pad(np.asarray(pressure, float), each // 2)
     lost = np.asarray(absorption_db_per_m(np.fft.rfftfreq(2 * each, 1 / sample_rate), air))
     record = np.zeros_like(padded)
-    for frame, window, way in zip(*_frames(ways.size, each), ways, strict=False):
-        spectrum = np.fft.rfft(window * padded[frame]) * 10 ** (-0.05 * lost * way)
+    for frame, window, length in zip(*_frames(lengths.size, each), lengths, strict=False):
+        spectrum = np.fft.rfft(window * padded[frame]) * 10 ** (-0.05 * lost * length)
         record[frame] += window * np.fft.irfft(spectrum, 2 * each)
     return record[each // 2 : -(each // 2)]
 

@@ -29,13 +29,13 @@ def tone_record(
     Parameters
     ----------
     frequency_hz : (n_harmonics,) array_like
-        Frequencies, multiples of the first [Hz].
+        Frequencies of the tones, multiples of the first [Hz].
     amplitude : (..., n_harmonics) complex array_like
         Amplitudes P_m as `Tones` holds them [Pa].
     duration : float
-        About how long [s]: as many blade passages as are nearest to it.
+        Duration of the record [s]; the nearest whole number of blade passages is taken.
     sample_rate : int
-        [Hz].
+        Samples per second [Hz].
 
     Returns
     -------
@@ -71,13 +71,13 @@ def looped_record(
     Parameters
     ----------
     pressure : (..., n_samples) array_like
-        One period, evenly sampled, the first value not repeated at the end [Pa].
+        Pressure over one period, evenly sampled, the first value not repeated at the end [Pa].
     period : float
-        Its length: a blade passage or a turn [s].
+        Length of the period: a blade passage or a turn [s].
     duration : float
-        About how long [s]: as many periods as are nearest to it.
+        Duration of the record [s]; the nearest whole number of periods is taken.
     sample_rate : int
-        [Hz].
+        Samples per second [Hz].
 
     Returns
     -------
@@ -87,7 +87,7 @@ def looped_record(
     Raises
     ------
     ValueError
-        If the period has fewer than 3 samples, or as in `tone_record`.
+        If the period has fewer than 3 samples or is infinite, or the record holds no sample.
     """
     p = np.asarray(pressure, float)
     if p.shape[-1] < 3:
@@ -113,11 +113,11 @@ def broadband_record(
     mean_square : (..., n_bands) array_like
         Mean-square pressures [Pa^2].
     n_times : int
-        Number of samples, that of the tones to be added to.
+        Number of samples, the same as that of the tones to which the noise is added.
     sample_rate : int
-        [Hz].
+        Samples per second [Hz].
     seed : int
-        Another one gives another noise of the same spectrum.
+        Seed of the random noise; another seed gives another noise of the same spectrum.
 
     Returns
     -------
@@ -128,7 +128,7 @@ def broadband_record(
     ------
     ValueError
         If all bands reach above half the sample rate, the record is too short to resolve the
-        lowest band, or as in `bands_in_bins`.
+        lowest band, or the bands are not neighbours.
     """
     center, wanted = np.asarray(center_hz, float), np.asarray(mean_square, float)
     fits = center * HALF_BAND < sample_rate / 2
@@ -146,22 +146,22 @@ def broadband_record(
 
 
 def common_full_scale(*pressures: ArrayLike) -> float:
-    """Full scale for files that are to be compared: their highest peak, rounded up to two digits.
+    """Full scale for files to be compared: their highest peak, rounded up to two digits.
 
     Parameters
     ----------
     *pressures : arrays
-        Records [Pa].
+        Records of the pressure [Pa].
 
     Returns
     -------
     float
-        [Pa].
+        Pressure of the full scale [Pa].
 
     Raises
     ------
     ValueError
-        If all is silent.
+        If all records are silent.
     """
     peak = max(float(np.abs(np.asarray(p, float)).max()) for p in pressures)
     if not peak > 0:

@@ -44,10 +44,10 @@ def source_history(
     name : {"thickness", "loading"}
         Name of the source in `TONAL_SOURCES`.
     sources : Panels, PointLoads or UnsteadySources
-        Closed surface, rigid or deforming, or forces ON THE FLUID, in their frame; what changes is
-        given at the emission times.
+        Closed surface, rigid or deforming, or forces ON THE FLUID, in their frame; changing ones
+        are given at the emission times.
     motion : Motion
-        Motion of that frame.
+        Motion of the sources' frame.
     emission_times : (n_source_times,) array_like
         Increasing source times tau [s], see `source_times`.
     observers : Observers
@@ -65,7 +65,8 @@ def source_history(
     Raises
     ------
     ValueError
-        If times are not as described or the observers are not slower than sound.
+        If the emission times do not increase, the observer times are not uniform or the observers
+        are not slower than sound.
 
     Notes
     -----

@@ -130,23 +130,23 @@ class _Track:
     @property
     def _miss(self) -> tuple[Floats, Floats]:
         speed = np.linalg.norm(self.velocity)
-        along = self.velocity / speed if speed > 0 else np.array([0.0, 0.0, 1.0])
-        return self.x - along * (self.x @ along), along
+        direction = self.velocity / speed if speed > 0 else np.array([0.0, 0.0, 1.0])
+        return self.x - direction * (self.x @ direction), direction
 
     def ways(self, times: Floats) -> Floats:
         return np.asarray(self._miss[1] @ self.x + np.linalg.norm(self.velocity) * times)
 
     def positions(self, ways: Floats) -> Floats:
-        miss, along = self._miss
-        return np.asarray(miss + ways[:, None] * along)
+        miss, direction = self._miss
+        return np.asarray(miss + ways[:, None] * direction)
 
     def distance(self, ways: Floats) -> Floats:
         """Distance of the hub at emission [m], as by `emission_distance`.
 
-        In numpy: JAX would compile it for every length of a record.
+        The arithmetic is numpy's: JAX would compile it for every length of a record.
         """
-        miss, along = self._miss
-        ahead = miss @ self.mach + ways * (along @ self.mach)
+        miss, direction = self._miss
+        ahead = miss @ self.mach + ways * (direction @ self.mach)
         beta2 = 1 - self.mach @ self.mach
         return np.asarray((ahead + np.sqrt(ahead**2 + beta2 * (miss @ miss + ways**2))) / beta2)
 
@@ -191,7 +191,7 @@ def _amplitudes(
 
 
 def _along(amplitudes: functools.partial[Complex], track: _Track, times: Floats) -> _Series:
-    """Double the number of positions until the new ones bring nothing new."""
+    """Double the number of positions until the new ones change nothing."""
     ends = track.ways(times[[0, -1]])
     nearest = float(np.linalg.norm(track.positions(np.clip([0.0], *ends))[0]))
     miss = float(np.linalg.norm(track.positions(np.zeros(1))[0]))

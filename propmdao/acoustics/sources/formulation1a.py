@@ -60,7 +60,7 @@ def tones(
     Returns
     -------
     Tones
-        Amplitudes of thickness and loading noise.
+        Amplitudes of thickness and loading noise [Pa].
 
     Notes
     -----
@@ -166,7 +166,7 @@ def _thickness(blade: _Blade, operation: _Operation) -> _Source:
 def _loading(blade: _Blade, operation: _Operation) -> _Source:
     """Loading noise, the sum of three terms over c.
 
-    They are::
+    The terms are::
 
         ldot_r / (d (1 - M_r)^2)
         c (l_r - l_M) / (d^2 (1 - M_r)^2)

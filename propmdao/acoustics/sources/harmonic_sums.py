@@ -33,12 +33,12 @@ def cos_sin(angle: Array) -> tuple[Array, Array]:
     Parameters
     ----------
     angle : array
-        Any shape [rad], below 1e6 in size.
+        Angles of any shape, below 1e6 in size [rad].
 
     Returns
     -------
     cosine, sine : arrays
-        The same shape.
+        Cosine and sine, of the shape of the angles.
     """
     turn = jnp.round(angle * (2 / np.pi))
     # pi/2 in two parts (Cody and Waite): the first has 33 bits, so that its multiples are exact
@@ -75,7 +75,7 @@ def harmonic_sums(strength: Array, cosine: Array, sine: Array, n_harmonics: int)
     Returns
     -------
     (..., n_harmonics) complex array
-        The sums.
+        Sums for m = 1 ... n_harmonics.
     """
     real, imag = strength * cosine, strength * sine
     terms = []

@@ -1,4 +1,4 @@
-"""Formulation 1A in general motion: what moving panels and forces radiate, one kernel for each.
+"""Formulation 1A in general motion: radiation of moving panels and forces, a kernel for each.
 
 `emission` works out how sources move when they emit and in which direction their sound leaves;
 a kernel makes pressure of it. `TONAL_SOURCES` has all kernels by the names that `Tones` and
@@ -41,14 +41,14 @@ class Emission(NamedTuple):
     velocity, acceleration : triples of arrays
         Motion of the sources on the ground [m/s], [m/s^2].
     distance : array
-        Distance d from the source at emission to the observer at reception, t = tau + d / c [m].
-        It is Farassat's r.
+        Distance d from the source at emission to the observer at reception, t = tau + d / c [m],
+        Farassat's r.
     direction : triple of arrays
         Unit vector in which the sound leaves, Farassat's r-hat.
     doppler : array
         Doppler factor 1 / (1 - M_r).
     near : array
-        ``d Mdot_r + c (M_r - M^2)`` [m/s].
+        Factor of the near field, ``d Mdot_r + c (M_r - M^2)`` [m/s].
     rate : array
         Rate dt/dtau of the time of reception over that of emission.
     sound_speed : scalar
@@ -93,7 +93,7 @@ def emission(
     Returns
     -------
     Emission
-        Arrays (n, n_times), for a kernel.
+        Motion and directions of the sources, arrays (n, n_times), for a kernel.
     """
     c = sound_speed
     turns = tuple(map(jnp.asarray, (pose.rotation, pose.rotation_rate, pose.rotation_acceleration)))
@@ -126,7 +126,7 @@ def emission(
 def thickness_kernel(e: Emission) -> Array:
     """Thickness noise of panels, ``4 pi p / rho``.
 
-    The two terms of it are, with v_n the normal velocity times the area::
+    The two terms are, with v_n the normal velocity times the area::
 
         v_n_dot / (d (1 - M_r)^2)
         v_n (d Mdot_r + c (M_r - M^2)) / (d^2 (1 - M_r)^3)
@@ -149,7 +149,7 @@ def thickness_kernel(e: Emission) -> Array:
 def loading_kernel(e: Emission) -> Array:
     """Loading noise of point forces, ``4 pi p``.
 
-    The three terms of it are::
+    The three terms are::
 
         ldot_r / (c d (1 - M_r)^2)
         (l_r - l_M) / (d^2 (1 - M_r)^2)
@@ -176,7 +176,7 @@ Kernel = Callable[[Emission], Array]
 
 
 class TonalSource(NamedTuple):
-    """Kernel of a source of tones, and what its pressure is proportional to.
+    """Kernel of a source of tones, and the factor of its pressure that the air gives.
 
     Attributes
     ----------

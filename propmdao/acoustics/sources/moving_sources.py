@@ -22,7 +22,7 @@ class UnsteadySources:
     Attributes
     ----------
     position, position_rate, position_acceleration : (n_times or 1, n, 3) arrays
-        In the frame [m], [m/s], [m/s^2].
+        Position of the sources in the frame and its two derivatives in time [m], [m/s], [m/s^2].
     vector, vector_rate : (n_times or 1, n, 3) arrays
         Outward vector area [m^2] or force ON THE FLUID [N], components in the frame, and its rate.
     """
@@ -40,14 +40,14 @@ def unsteady_loads(position: ArrayLike, force: ArrayLike, force_rate: ArrayLike)
     Parameters
     ----------
     position : (n, 3) array_like
-        In the frame [m].
+        Points at which the forces act, in the frame [m].
     force, force_rate : (n_times, n, 3) array_like
         Force ON THE FLUID [N], components in the frame, and its rate [N/s].
 
     Returns
     -------
     UnsteadySources
-        For `loading_history`, at the same source times.
+        Forces at the source times of the rows of `force`, for `source_history`.
     """
     x = jnp.asarray(position, float)[None]
     f, rate = jnp.asarray(force, float), jnp.asarray(force_rate, float)
@@ -60,15 +60,15 @@ def compact_sections(position: ArrayLike, volume: ArrayLike) -> Panels:
     Parameters
     ----------
     position : (n, 3) array_like
-        Of the elements, in the blade's frame [m].
+        Positions of the elements, in the blade's frame [m].
     volume : (n,) array_like
         Section area times length of each element [m^3].
 
     Returns
     -------
     Panels
-        Around each point six sides of a cube, a millionth of the blade in size and with areas that
-        give it the volume. Good for thickness noise of wavelengths above the chord.
+        Six sides of a cube around each point, a millionth of the blade in size and with areas that
+        give it the volume. They hold for thickness noise of wavelengths above the chord.
     """
     x = np.asarray(position, float).reshape(-1, 3)
     size = 1e-6 * float(np.abs(x).max())
@@ -85,7 +85,7 @@ class PeriodicLoads:
     Attributes
     ----------
     position : (n, 3) array
-        Where the forces act, in the blade's frame [m].
+        Points at which the forces act, in the blade's frame [m].
     force : (n_azimuths, n, 3) array
         Force ON THE FLUID, components in the blade's frame [N], at equally spaced azimuths of the
         blade from 0; the last row is not the first again.
@@ -102,7 +102,7 @@ class AperiodicLoads:
     Attributes
     ----------
     position : (n, 3) array
-        Where the forces act, in the blade's frame [m].
+        Points at which the forces act, in the blade's frame [m].
     times : (n_times,) array
         Source times, increasing [s].
     force : (n_blades, n_times, n, 3) array
@@ -125,20 +125,20 @@ def blade_loads(
     Parameters
     ----------
     loads : PointLoads, PeriodicLoads or AperiodicLoads
-        Constant, the same for every blade at its azimuth, or each blade's own.
+        Forces that are constant, the same for every blade at its azimuth, or each blade's own.
     blade : int
-        Which, counted from 0.
+        Number of the blade, counted from 0.
     azimuth : float
-        Of the blade at time 0 [rad].
+        Azimuth of the blade at time 0 [rad].
     rotation_speed : float
-        Omega [rad/s].
+        Rotation speed Omega [rad/s].
     times : (n_times,) array_like
         Source times [s].
 
     Returns
     -------
     PointLoads or UnsteadySources
-        For `loading_history`.
+        Forces of the blade, constant or at the source times, for `source_history`.
 
     Raises
     ------
@@ -173,18 +173,18 @@ def sample(
     Parameters
     ----------
     values : (n_values, ...) array_like
-        Table.
+        Values of the table, one row for each time.
     value_times : (n_values,) array_like
-        Increasing [s].
+        Times of the table's rows, increasing [s].
     times : (n_times,) array_like
-        Where to [s].
+        Times at which the values are wanted [s].
     period : float, optional
-        The table repeats after it [s]; the last row may repeat the first or be left out.
+        Time after which the table repeats [s]; its last row may repeat the first or be left out.
 
     Returns
     -------
     values, rates, accelerations : (n_times, ...) arrays
-        Interpolated.
+        Interpolated values and their first two derivatives in time.
 
     Raises
     ------
@@ -217,25 +217,26 @@ class Sources(NamedTuple):
     Attributes
     ----------
     position, vector : tuples of (3, n, n_times or 1) arrays
-        In the frame; the value and as many derivatives in time as are not zero.
+        Position, and vector area or force, in the frame: each the value and as many of its
+        derivatives in time as are not zero.
     """
 
     position: tuple[Array, ...]
     vector: tuple[Array, ...]
 
 
-def frame_sources(given: Panels | PointLoads | UnsteadySources) -> Sources:
-    """Sources at rest or unsteady, by components."""
+def frame_sources(sources: Panels | PointLoads | UnsteadySources) -> Sources:
+    """Split sources, at rest or unsteady, into components."""
 
     def time_last(*arrays: Array) -> tuple[Array, ...]:
         return tuple(jnp.asarray(a, float).transpose(2, 1, 0) for a in arrays)
 
-    if isinstance(given, UnsteadySources):
-        moving = (given.position, given.position_rate, given.position_acceleration)
-        return Sources(time_last(*moving), time_last(given.vector, given.vector_rate))
+    if isinstance(sources, UnsteadySources):
+        moving = (sources.position, sources.position_rate, sources.position_acceleration)
+        return Sources(time_last(*moving), time_last(sources.vector, sources.vector_rate))
     points, vectors = (
-        (given.center, given.vector_area)
-        if isinstance(given, Panels)
-        else (given.position, given.force)
+        (sources.center, sources.vector_area)
+        if isinstance(sources, Panels)
+        else (sources.position, sources.force)
     )
     return Sources(time_last(points[None]), time_last(vectors[None]))

@@ -54,7 +54,7 @@ def rotor_tones(
     Returns
     -------
     Tones
-        Amplitudes of every source, zero at zero rotation speed.
+        Amplitudes of every source [Pa], zero at zero rotation speed.
 
     Raises
     ------
@@ -107,7 +107,7 @@ def rotor_tones(
 
 
 def symmetry(azimuths: ArrayLike) -> int:
-    """How often the arrangement of the blades repeats within a turn.
+    """Number of times that the arrangement of the blades repeats within a turn.
 
     Parameters
     ----------
@@ -117,7 +117,8 @@ def symmetry(azimuths: ArrayLike) -> int:
     Returns
     -------
     int
-        n_blades if equally spaced, 1 if nothing repeats; 2 for two scissored pairs.
+        Number of repetitions: n_blades if equally spaced, 1 if nothing repeats, 2 for two
+        scissored pairs.
     """
     angles = np.atleast_1d(np.asarray(azimuths, float))
     n = angles.size

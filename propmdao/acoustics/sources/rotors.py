@@ -48,15 +48,16 @@ class Rotor:
     azimuths : (n_blades,) array_like
         Azimuth of each blade at time 0 [rad]; any spacing.
     rotation_speed : float
-        Omega [rad/s]; negative for a rotor that turns the other way, see `mirrored`.
+        Rotation speed Omega [rad/s]; negative for a rotor that turns the other way, see `mirrored`.
     panels : Panels, optional
-        Closed surface of a blade that lies along +x at azimuth 0: without it no thickness noise.
+        Closed surface of a blade that lies along +x at azimuth 0; without it there is no thickness
+        noise.
     loads : PointLoads, PeriodicLoads or AperiodicLoads, optional
-        Forces of the blade on the fluid: without them no loading noise.
+        Forces of the blade on the fluid; without them there is no loading noise.
     mount : Motion
         Frames at rest in the aircraft, to the hub and into the direction of the shaft.
     name : str
-        Name in messages.
+        Name of the rotor in messages.
     """
 
     azimuths: ArrayLike
@@ -77,10 +78,10 @@ class Rotor:
 
     @property
     def azimuths_held(self) -> dict[str, int]:
-        """Kinds of sources it has, by their names in `TONAL_SOURCES`.
+        """Kinds of sources that the rotor has, by their names in `TONAL_SOURCES`.
 
-        With each, the number of azimuths at which it is tabulated over the turn: 0 for what is
-        constant, or given over time.
+        The value of each is the number of azimuths at which it is tabulated over the turn: 0 for
+        constant sources and for those given over time.
         """
         held = {} if self.panels is None else {"thickness": 0}
         if self.loads is not None:
@@ -96,7 +97,7 @@ class Rotor:
         Parameters
         ----------
         name : str
-            One of `azimuths_held`.
+            Kind of the sources, one of `azimuths_held`.
         blade : int
             Number of the blade, counted from 0.
         azimuth : float
@@ -128,7 +129,7 @@ def equally_spaced(n_blades: int, first: float = 0.0) -> NDArray[np.float64]:
     n_blades : int
         Number of blades.
     first : float
-        Azimuth of the first [rad].
+        Azimuth of the first blade [rad].
 
     Returns
     -------
@@ -149,7 +150,7 @@ def mirrored(rotor: Rotor) -> Rotor:
     Returns
     -------
     Rotor
-        Its mirror image, on the same mount.
+        Mirror image of the rotor, on the same mount.
     """
     flip = jnp.array([1.0, -1.0, 1.0])
     panels, loads = rotor.panels, rotor.loads
@@ -203,7 +204,8 @@ def rotor_histories(
     ------
     ValueError
         If sources reach the speed of sound, an observer comes into a rotor's region, tables over
-        time do not cover the source times, times are not evenly spaced or the air is none.
+        time do not cover the source times, times are not evenly spaced or density and speed of
+        sound are not positive.
 
     Notes
     -----
@@ -231,14 +233,14 @@ def silence(observers: Observers, times: NDArray[np.float64]) -> PressureHistory
     Parameters
     ----------
     observers : Observers
-        Observers.
+        Observers at rest or in uniform motion.
     times : (n_times,) array
         Observer times [s].
 
     Returns
     -------
     PressureHistory
-        Zeros, to add to.
+        Record of zeros, to which pressures are added.
     """
     shape = len(observers.position), times.size
     return PressureHistory(times, {name: np.zeros(shape) for name in TONAL_SOURCES})
@@ -257,7 +259,7 @@ def segments(n_times: int, n_unsteady: int) -> list[slice]:
     Returns
     -------
     list of slice
-        They cover the record; the last may overlap the one before it.
+        Slices that cover the record; the last may overlap the one before it.
     """
     length = min(n_times, max(256, min(8192, _AT_ONCE // max(n_unsteady, 1))))
     starts = [*range(0, n_times - length, length), n_times - length]

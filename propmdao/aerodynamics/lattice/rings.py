@@ -32,7 +32,7 @@ class Rings:
     collocation : (nc * ns, 3) array
         Collocation points, three quarters down each panel [m].
     normal : (nc * ns, 3) array
-        Unit normals there, toward the suction side.
+        Unit normals at the collocation points, toward the suction side.
     """
 
     corner: Array
@@ -52,8 +52,8 @@ def _chordwise_operators(n_chordwise: int) -> tuple[np.ndarray, np.ndarray, np.n
     at_three_quarter = x[:-1] + 0.75 * np.diff(x)
     identity = np.eye(n_chordwise + 1)
     quarter, three_quarter = (
-        np.array([np.interp(at, x, row) for row in identity]).T
-        for at in (at_quarter, at_three_quarter)
+        np.array([np.interp(wanted, x, row) for row in identity]).T
+        for wanted in (at_quarter, at_three_quarter)
     )
     return quarter, three_quarter, CubicSpline(x, identity)(at_three_quarter, 1)
 
@@ -127,11 +127,11 @@ def blade_influence(points: Array, rings: Rings, azimuths: np.ndarray, core: Sca
     Parameters
     ----------
     points : (n_points, 3) array
-        Where the velocity is wanted [m].
+        Points at which the velocity is wanted [m].
     rings : Rings
         Lattice of blade 1.
     azimuths : (n_blades,) array
-        Of the blades that are summed, from that of blade 1 [rad].
+        Azimuths of the blades that are summed, from that of blade 1 [rad].
     core : float
         Core radius of the segments, positive [m].
 
@@ -159,7 +159,7 @@ def wake_influence(points: Array, wake_nodes: Array, wake_core_radius: Array) ->
     Parameters
     ----------
     points : (n_points, 3) array
-        Where the velocity is wanted [m].
+        Points at which the velocity is wanted [m].
     wake_nodes : (ns + 1, n_blades, n_nodes, 3) array
         Trailing filaments of the blades that are summed, because their circulation is the same [m].
     wake_core_radius : (n_nodes - 1,) array

@@ -20,9 +20,9 @@ class Strips:
     quarter_chord : (ns, 3) array
         Quarter points of the chord lines [m].
     radius, r_over_R : (ns,) arrays
-        Their distance from the axis, and over the tip radius [m].
+        Distance of the quarter points from the axis [m], and this over the tip radius.
     chord, width : (ns,) arrays
-        Chord, and width of the strip across it [m].
+        Chord, and width of the strip across the chord [m].
     backward, upward : (ns, 3) arrays
         Unit vectors along the chord line, leading to trailing edge, and normal to it, toward the
         suction side.
@@ -48,7 +48,7 @@ def blade_strips(nodes: Array, rings: Rings, tip_radius: Scalar) -> Strips:
     nodes : (nc + 1, ns + 1, 3) array
         Corner points of the lattice of blade 1, from leading edge and root [m].
     rings : Rings
-        Its rings.
+        Rings of the lattice of blade 1.
     tip_radius : float
         Tip radius [m].
 
@@ -88,7 +88,7 @@ def blade_strips(nodes: Array, rings: Rings, tip_radius: Scalar) -> Strips:
 def _zero_lift_weights(n_chordwise: int) -> np.ndarray:
     """Share of the camber line's slope at each collocation point in the zero-lift angle.
 
-    From the lattice's own two-dimensional form: with vortices at x_j and the condition at x_i,
+    It follows from the lattice in two dimensions: with vortices at x_j and the condition at x_i,
     sum_j gamma_j / (2 pi (x_i - x_j)) = W (alpha - slope_i), and the sum of the gammas is
     pi c W (alpha - alpha_0) (Katz and Plotkin 2001, section 11.1.1).
     """

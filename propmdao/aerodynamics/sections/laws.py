@@ -1,4 +1,4 @@
-"""What the sections of a blade do in viscous flow, as the lattice is held to it.
+"""Lift and drag of a blade's sections in viscous flow, to which the lattice is held.
 
 Past stall, where cl falls with alpha, the equations of strips much narrower than their chord have
 many solutions, in which neighbouring strips exchange lift. A polar is that of a section, which has
@@ -29,14 +29,14 @@ _MIXING = 0.5  # standard deviation of the mean over the span, in chords
 
 @record
 class ViscousSections:
-    """What the sections of a blade do in viscous flow.
+    """Polars of the sections of a blade, at any operating point.
 
     Attributes
     ----------
     polars : PolarTable
         Polars of the sections in the middle of the strips, ns rows.
     stall_delay : float
-        1 where rotation delays stall, 0 for polars as in two dimensions.
+        Factor on the stall delay: 1 where rotation delays stall, 0 for two-dimensional polars.
     """
 
     polars: PolarTable
@@ -56,17 +56,17 @@ def viscous_sections(
     polars : SectionPolars
         Polars of the propeller's sections.
     blade : Blade
-        Its blade, modified or not.
+        Blade of the propeller, modified or not.
     section_radii : SpanInterpolation
         Interpolation from the blade's stations to the middle of the strips,
         `geometry.lattice.strip_interpolation`.
     stall_delay : float
-        1 where rotation delays stalls, 0 for polars as in two dimensions.
+        Factor on the stall delay: 1 where rotation delays stall, 0 for two-dimensional polars.
 
     Returns
     -------
     ViscousSections
-        What the lattice is held to.
+        Polars to which the lattice is held.
     """
     table = blade_tables(polars, blade, section_radii)
     return ViscousSections(table, jnp.asarray(stall_delay, float))
@@ -79,13 +79,14 @@ class SectionLaws:
     Attributes
     ----------
     curves : SectionCurves
-        In two dimensions, at the strips' Reynolds and Mach numbers.
+        Two-dimensional lift and drag curves at the strips' Reynolds and Mach numbers.
     zero_lift_angle : (ns,) array
-        By thin-airfoil theory [rad].
+        Angle of attack at which thin-airfoil theory has no lift [rad].
     potential_zero_lift_angle, stall_delay : (ns,) arrays
-        As `delayed_stall` takes them.
+        Angle of attack at which the potential flow that meets the attached polar has no lift [rad],
+        and share of the lift missing to it that rotation gives back (0 without stall delay).
     mean : (ns, ns) array
-        Means over the span near each strip.
+        Matrix that takes the mean of strip values over the span near each strip.
     """
 
     curves: SectionCurves
@@ -99,7 +100,7 @@ class SectionLaws:
         return 2.0 * jnp.pi * (alpha - self.zero_lift_angle)
 
     def beyond_thin(self, alpha: Array) -> tuple[Array, Array]:
-        """What the polars add to the lift of thin-airfoil theory, and drag: (ns,) each."""
+        """Lift that the polars add to that of thin-airfoil theory, and drag: (ns,) each."""
         cl, cd, _ = curve_coefficients(self.curves, alpha)
         cl, cd = delayed_stall(cl, cd, alpha, self.potential_zero_lift_angle, self.stall_delay)
         return cl - self.thin(alpha), cd
@@ -113,11 +114,11 @@ def section_laws(
     Parameters
     ----------
     strips : Strips
-        The sections.
+        Sections of blade 1.
     turning : (ns,) array
-        Speed of rotation [m/s].
+        Speed at which rotation moves the sections [m/s].
     axial_speed : float
-        Flight and induced speed at the disk [m/s].
+        Sum of flight speed and induced velocity at the disk [m/s].
     air : Air
         The undisturbed air.
     sections : ViscousSections
@@ -126,7 +127,7 @@ def section_laws(
     Returns
     -------
     SectionLaws
-        Lift and drag by the angle of attack alone.
+        Lift and drag of the strips as functions of the angle of attack alone.
     """
     w = jnp.hypot(turning, axial_speed)
     reynolds = air.density * w * strips.chord / air.dynamic_viscosity
@@ -140,11 +141,11 @@ def section_laws(
 
 
 def _potential_zero_lift_angle(curves: SectionCurves, thin: Array) -> Array:
-    """Where the lift of potential flow vanishes that meets the polars in attached flow: (ns,).
+    """Angle at which potential flow that agrees with the attached polars has no lift, (ns,) [rad].
 
     At half the zero-lift angle above the chord line sections work near their best, at any camber
-    and its mirror image. What the boundary layer takes off the camber there is no stall for
-    rotation to delay.
+    and its mirror image. The camber that the boundary layer takes off there is not lost to stall,
+    so rotation does not give it back.
     """
     attached = -0.5 * thin
     cl = curve_coefficients(curves, attached)[0]

@@ -44,9 +44,10 @@ class SectionStates:
     relative_speed : (ns,) array
         W, speed of the air relative to the section [m/s].
     angle_of_attack : (ns,) array
-        Effective, from the chord line [rad].
+        Effective angle of attack, from the chord line [rad].
     lift_coefficient, drag_coefficient : (ns,) arrays
-        Of the section; without polars the lift of the lattice, and no drag.
+        Lift and drag coefficients of the section; without polars the lift is the lattice's and
+        the drag 0.
     residual : (ns,) array
         Lift coefficient of the lattice less that of the polar: 0 where they agree.
     """
@@ -65,13 +66,13 @@ class StripFlow:
     Attributes
     ----------
     strips : Strips
-        The sections.
+        Sections of blade 1.
     relative_speed : (ns,) array
-        W [m/s].
+        W, speed of the air relative to the section [m/s].
     circulation : (ns,) array
-        Of the strips without recambering [m^2/s].
+        Circulation of the strips without recambering [m^2/s].
     response : (ns, ns) array
-        Change of each by a unit of each recambering [m^2/s].
+        Change of each strip's circulation per radian of each strip's recambering [m^2/s].
     """
 
     strips: Strips
@@ -93,16 +94,16 @@ def section_states(flow: StripFlow, recambering: Array, laws: SectionLaws | None
     Parameters
     ----------
     flow : StripFlow
-        Strips at an operating point.
+        Strips of the lattice at an operating point.
     recambering : (ns,) array
-        Of each strip [rad].
+        Recambering of each strip [rad].
     laws : SectionLaws or None
-        Their polars; without any, lift is the lattice's and there is no drag.
+        Polars of the strips; None takes the lift of the lattice, and no drag.
 
     Returns
     -------
     SectionStates
-        With the residual that the recambering has to bring to zero.
+        Flow of the sections, and the residual that the recambering has to bring to zero.
     """
     alpha, lift = flow.angle_and_lift(recambering)
     held, cd = lift, jnp.zeros_like(lift)
@@ -121,14 +122,15 @@ def solve_recambering(flow: StripFlow, laws: SectionLaws) -> Array:
     Parameters
     ----------
     flow : StripFlow
-        Strips at an operating point.
+        Strips of the lattice at an operating point.
     laws : SectionLaws
-        Their polars.
+        Polars of the strips at the operating point.
 
     Returns
     -------
     (ns,) array
-        Recambering [rad]; where none is found, the last one tried: see the residual.
+        Recambering of each strip [rad]; where the search fails, the last one tried, whose residual
+        is not 0.
     """
     fixed_flow, fixed_laws = jax.lax.stop_gradient((flow, laws))
     ns = flow.circulation.size

@@ -21,7 +21,7 @@ def delay_factor(chord_over_r: Array, r_over_R: Array, turning_share: Scalar) ->
     chord_over_r : (n,) array
         Chord over local radius.
     r_over_R : (n,) array
-        Local over tip radius.
+        Local radius over tip radius.
     turning_share : float
         Lambda, rotational speed of the tip over its resultant with the axial speed.
 
@@ -49,21 +49,22 @@ def delayed_stall(
     Parameters
     ----------
     cl, cd : (n,) arrays
-        In two dimensions.
+        Lift and drag coefficients of the section in two dimensions.
     alpha, zero_lift_angle : (n,) arrays
-        Angle of attack, and where potential flow has no lift that agrees with the polar where the
-        flow is attached [rad].
+        Angle of attack, and the angle at which the potential flow that agrees with the attached
+        part of the polar has no lift [rad].
     factor : (n,) array
-        Of `delay_factor`; 0 leaves the coefficients as they are.
+        Share of the missing lift that rotation gives back, from `delay_factor`; 0 leaves the
+        coefficients as they are.
 
     Returns
     -------
     cl, cd : (n,) arrays
-        On the rotating blade.
+        Lift and drag coefficients of the section on the rotating blade.
     """
     first, last = _FADES
-    beyond = jnp.clip((jnp.abs(alpha) - first) / (last - first), 0.0, 1.0)
-    fade = 1.0 - beyond * beyond * (3.0 - 2.0 * beyond)
+    progress = jnp.clip((jnp.abs(alpha) - first) / (last - first), 0.0, 1.0)
+    fade = 1.0 - progress * progress * (3.0 - 2.0 * progress)
     potential = 2.0 * jnp.pi * jnp.sin(alpha - zero_lift_angle)
     more = factor * fade * (potential - cl)
     # Where nothing is added the tangent must not be looked at: it has poles.

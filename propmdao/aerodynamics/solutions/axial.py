@@ -45,7 +45,7 @@ class AxialFlow:
     Attributes
     ----------
     case : RotorCase
-        What is solved; its rotation speed is not 0.
+        Case to solve; its rotation speed is not 0.
     lattice : LatticeGeometry
         Lattice of blade 1.
     """
@@ -62,12 +62,12 @@ _Params = tuple[AxialFlow, Array]  # with the thrust guessed
 
 
 def flow_at(case: RotorCase) -> AxialFlow:
-    """Prepare a case: what of the lattice no operating point changes.
+    """Prepare a case by the part of its lattice that no operating point changes.
 
     Parameters
     ----------
     case : RotorCase
-        What is solved.
+        Case to solve.
 
     Returns
     -------
@@ -137,8 +137,8 @@ def solve(case: RotorCase, thrust_guess: Scalar = 0.0) -> RotorLoads:
     case : RotorCase
         The rotor and how it turns and flies; a rotation speed of 0 gives zero loads.
     thrust_guess : float
-        Thrust of all blades where it is nearly known, as after a trim: it saves half of the work
-        and does not change the result. 0 is no guess [N].
+        Guess of the thrust of all blades [N], known for example after a trim: it saves half of the
+        work and does not change the result. 0 is no guess.
 
     Returns
     -------
@@ -188,9 +188,9 @@ def evaluate(
 ) -> tuple[Array, LatticeLoads]:
     """Thrust at a rotation speed, in the wake that the thrust required transports.
 
-    One lattice solution is enough for a trial of a trim: at the solution that wake is its own. At
-    any other rotation speed the thrust is wrong, but never on the wrong side of the thrust
-    required.
+    A trial of a trim takes one lattice solution. At the rotation speed searched for, this wake is
+    the solution's own. At any other the thrust is wrong, but it never lies on the wrong side of the
+    thrust required.
 
     Parameters
     ----------
@@ -225,7 +225,7 @@ def solution(
     rotation_speed : float
         Rotation speed at which the thrust is the one required [rad/s].
     loads : LatticeLoads
-        Loads of blade 1 there.
+        Loads of blade 1 at that rotation speed.
 
     Returns
     -------
@@ -291,7 +291,7 @@ def unless_still(turning: Array, loads: RotorLoads) -> RotorLoads:
     Returns
     -------
     RotorLoads
-        The same, or zeros, which count as converged.
+        Loads that were passed in or, at rest, zeros, which count as converged.
     """
     still = jax.tree.map(jnp.zeros_like, loads)
     still = dataclasses.replace(

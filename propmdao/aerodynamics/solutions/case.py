@@ -1,4 +1,4 @@
-"""What a solution is of: a rotor, how it turns and flies, its sections and its wake."""
+"""Case to be solved: a rotor, how it turns and flies, its sections and its wake."""
 
 from __future__ import annotations
 
@@ -20,11 +20,11 @@ class RotorCase:
     rotor : RotorGeometry
         Blade and number of blades.
     state : RotorState
-        How the rotor turns and flies.
+        Rotation speed, flight speed and air of the rotor.
     sections : ViscousSections or None
         Polars that the lattice is held to; None for inviscid flow.
     wake : WakeTransport
-        How the wake moves, and where its nodes are.
+        Law by which the wake moves, and the ages of its nodes.
     """
 
     rotor: RotorGeometry

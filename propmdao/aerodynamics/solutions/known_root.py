@@ -1,9 +1,9 @@
 """Solutions at the root that a search has found, for derivatives by the implicit function theorem.
 
-`axial.solve` and `trim.solve_for_thrust` can be differentiated as they are. Who has their root and
-asks for many derivatives does without their searches: the derivatives of solution and residual,
-with the root as one more argument, are all that the theorem needs, from one evaluation of the
-lattice.
+`axial.solve` and `trim.solve_for_thrust` can be differentiated as they are. Where their root is
+known and many derivatives are wanted, their searches need not be repeated: all that the theorem
+needs is the derivatives of solution and residual, with the root as one more argument, from one
+evaluation of the lattice.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ def steady_at(induced_velocity: Scalar, case: RotorCase) -> tuple[RotorLoads, Ar
     induced_velocity : float
         Induced velocity at the disk, that of `axial.solve` [m/s].
     case : RotorCase
-        What `axial.solve` was given.
+        Case that `axial.solve` has solved.
 
     Returns
     -------
@@ -52,7 +52,7 @@ def trimmed_at(
     rotation_speed : float
         Rotation speed, that of `trim.solve_for_thrust` [rad/s].
     case : RotorCase
-        What was trimmed; its own rotation speed does not matter.
+        Case that was trimmed; its own rotation speed does not matter.
     thrust_required : float
         Thrust of all blades [N].
 

@@ -37,14 +37,14 @@ from propmdao.records.states import RotorState
 
 @record
 class LatticeGeometry:
-    """What of the lattice does not change with the operating point.
+    """Part of the lattice that does not change with the operating point.
 
     Attributes
     ----------
     rings : Rings
         Lattice of blade 1.
     strips : Strips
-        Its sections.
+        Sections of blade 1 in the strips of the lattice.
     points : (n_panels + n_segments, 3) array
         Collocation points, then points of the bound and chordwise segments' forces [m].
     segment : (n_segments, 3) array
@@ -70,12 +70,12 @@ class LatticeLoads:
     circulation : (nc, ns) array
         Circulation of the rings [m^2/s].
     position : (n_segments + ns, 3) array
-        Where the forces act: bound segments (nc * ns) first, then chordwise (nc * (ns + 1)), then
-        the quarter points of the sections [m].
+        Points at which the forces act: bound segments (nc * ns) first, then chordwise
+        (nc * (ns + 1)), then the quarter points of the sections [m].
     force : (n_segments + ns, 3) array
         Force on the blade; that on the sections is profile drag [N].
     sections : SectionStates
-        How the sections work.
+        Flow, lift and drag of the sections.
     """
 
     circulation: Array
@@ -106,7 +106,7 @@ class Onset:
     turning : (ns,) array
         Speed at which the air meets the sections by rotation [m/s].
     axial_speed : scalar
-        Speed at which it meets the disk along the axis, induced velocity included [m/s].
+        Speed at which the air meets the disk along the axis, induced velocity included [m/s].
     """
 
     velocity: Array
@@ -115,7 +115,7 @@ class Onset:
 
     @property
     def relative_speed(self) -> Array:
-        """Resultant at the sections, (ns,) [m/s]."""
+        """Resultant speed of the air at the sections, (ns,) [m/s]."""
         return jnp.hypot(self.turning, self.axial_speed)
 
 
@@ -127,14 +127,14 @@ def axial_onset(lattice: LatticeGeometry, state: RotorState, induced_velocity: S
     lattice : LatticeGeometry
         Lattice of blade 1.
     state : RotorState
-        How the rotor turns and flies.
+        Rotation speed, flight speed and air of the rotor.
     induced_velocity : float
         Induced velocity at the disk [m/s].
 
     Returns
     -------
     Onset
-        The air, in the turning and climbing frame of the blade.
+        Velocities of the air in the turning and climbing frame of the blade.
     """
     omega, speed = state.rotation_speed, state.speed
     x, y = lattice.points[:, 0], lattice.points[:, 1]

@@ -22,18 +22,18 @@ class RotorLoads:
     Attributes
     ----------
     thrust, torque : float
-        Of all blades [N], [N m].
+        Thrust and torque of all blades [N], [N m].
     induced_velocity : float
-        At the disk, by which the wake is transported [m/s].
+        Induced velocity at the disk, which transports the wake [m/s].
     circulation : (nc, ns) array
         Circulation of the rings of a blade [m^2/s].
     strip_thrust, strip_torque : (ns,) array
-        Share of each strip of a blade; divide by the strip's width for loads per span
-        [N], [N m].
+        Thrust and torque of each strip of a blade [N], [N m]; divide by the strip's width for
+        loads per span.
     point_loads : PointLoads
         Forces of blade 1 on the fluid, for acoustics.
     strips, sections : Strips, SectionStates
-        Sections of blade 1, and how they work.
+        Sections of blade 1, and their flow, lift and drag.
     converged : bool
         Whether thrust and induced velocity agree with momentum theory, and lattice and polars on
         the lift of every section; `failure` says what does not.
@@ -62,7 +62,7 @@ def failure(solution: RotorLoads) -> str | None:
     Returns
     -------
     str or None
-        One line, or None where it converged.
+        Reason in one line, or None where the solution converged.
     """
     if solution.converged:
         return None
@@ -91,7 +91,7 @@ def strip_loads(loads: LatticeLoads) -> tuple[Array, Array]:
     Returns
     -------
     thrust, torque : (ns,) array
-        They add up to the blade's [N], [N m].
+        Thrust and torque of each strip, which add up to the blade's [N], [N m].
     """
     nc, ns = loads.circulation.shape
     x, y = loads.position[:, 0], loads.position[:, 1]

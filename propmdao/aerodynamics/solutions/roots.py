@@ -31,10 +31,11 @@ def decreasing_root(
     Parameters
     ----------
     residual : callable
-        Continuous function of slope about -1, positive at `low` and negative at `high`, and what
-        was computed on the way to it, any pytree; the ends are not evaluated.
+        Function that returns the residual and the results computed on the way to it, any pytree.
+        The residual is continuous, of slope about -1, positive at `low` and negative at `high`;
+        the ends are not evaluated.
     low, high, guess : float
-        Bracket and first trial.
+        Both ends of the bracket, and the first trial.
     tolerance : float
         Relative error allowed. For a slope of about -1 a secant step leaves an error of about the
         product of the last two steps, and the first step one below the residual.
@@ -128,7 +129,7 @@ def at_root(
     solve : callable
         ``solve(params) -> (x, results, notes)`` finds the root, a scalar, by any means, and the
         results there; notes on the search, a pytree of floats, are passed on without a derivative.
-        That it also has the results keeps the model from being compiled twice.
+        Returning the results as well keeps the model from being compiled twice.
     evaluate : callable
         ``evaluate(params, x)`` gives the results, any pytree of floats.
     residual : callable
@@ -139,7 +140,7 @@ def at_root(
     Returns
     -------
     root, results, notes : float, pytree, pytree
-        The root, the results there, and what `solve` noted.
+        Root, results at the root, and the notes of `solve`.
     """
 
     @jax.custom_jvp

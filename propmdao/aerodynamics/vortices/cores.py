@@ -20,7 +20,7 @@ def core_radius(
     Parameters
     ----------
     ages : (n_nodes,) array
-        Azimuth of the wake nodes behind the blade [rad].
+        Azimuths of the wake nodes behind the blade [rad].
     rotation_speed : float
         Rotation speed [rad/s].
     kinematic_viscosity : float

@@ -1,1 +1,1 @@
-"""Where the wake goes: momentum theory, its law of transport, the ages of its nodes."""
+"""The wake: momentum theory, the law of its transport, the ages of its nodes."""

@@ -34,7 +34,7 @@ from propmdao.records.wake_law import WakeGrid, WakeLaw
 
 @record
 class WakeTransport:
-    """How the wake moves, and the ages that its nodes have reached.
+    """Law by which the wake moves, and the ages that its nodes have reached.
 
     Attributes
     ----------
@@ -61,7 +61,7 @@ def wake_transport(law: WakeLaw = WakeLaw(), grid: WakeGrid = WakeGrid()) -> Wak
     Returns
     -------
     WakeTransport
-        For the solutions.
+        Law and ages, as the solutions take them.
     """
     return WakeTransport(law, wake_azimuths(grid))
 
@@ -78,13 +78,13 @@ def helical_wake(
     Parameters
     ----------
     trailing_nodes : (n_filaments, 3) array
-        Where the filaments leave blade 1 [m].
+        Points at which the filaments leave blade 1 [m].
     transport : WakeTransport
-        How the wake moves, and where its nodes are.
+        Law by which the wake moves, and the ages of its nodes.
     rotor : RotorGeometry
-        The rotor that it leaves.
+        Rotor that the wake leaves.
     state : RotorState
-        How the rotor turns and flies.
+        Rotation speed, flight speed and air of the rotor.
     induced_velocity : float
         Induced velocity at the disk [m/s].
 
@@ -119,14 +119,15 @@ def outer_part(r_over_R: Array, law: WakeLaw) -> Array:
     Parameters
     ----------
     r_over_R : (n_filaments,) array
-        Where the filaments leave the blade.
+        Radius over tip radius at which the filaments leave the blade.
     law : WakeLaw
-        Where the outer part begins.
+        Law of the wake, whose `inner_edge` counts here.
 
     Returns
     -------
     (n_filaments,) array
-        From 0, carried by the air inside, to 1 at the tip; smooth.
+        Share of the outer part, which rises smoothly from 0 (carried by the air inside) to 1 at the
+        tip.
     """
     x = jnp.clip((r_over_R - law.inner_edge) / (1.0 - law.inner_edge), 0.0, 1.0)
     return x * x * (3.0 - 2.0 * x)
@@ -140,7 +141,7 @@ def helices(
     Parameters
     ----------
     trailing_nodes : (n_filaments, 3) array
-        Where the filaments leave blade 1 [m].
+        Points at which the filaments leave blade 1 [m].
     ages : (n_nodes,) array
         Azimuths behind the blade [rad].
     n_blades : int

@@ -27,7 +27,7 @@ def momentum_induced_velocity(thrust: Scalar, state: RotorState, radius: Scalar)
     thrust : float
         Thrust of all blades, negative when windmilling [N].
     state : RotorState
-        How the rotor turns and flies.
+        Rotation speed, flight speed and air of the rotor.
     radius : float
         Tip radius [m].
 

@@ -15,12 +15,12 @@ def change_of_base(group: Group) -> Motion:
     Parameters
     ----------
     group : Group
-        The group.
+        Group ``&CB`` of a namelist.
 
     Returns
     -------
     Motion
-        No frame, one or two.
+        Chain of no frame, one or two.
 
     Raises
     ------
@@ -113,7 +113,7 @@ def observer_points(group: Group) -> NDArray[np.float64]:
     Raises
     ------
     WopwopFileError
-        If the group describes them in another way.
+        If the group describes the observers in another way.
     """
 
     def line(name: str, count: str) -> NDArray[np.float64]:

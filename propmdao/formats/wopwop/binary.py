@@ -1,6 +1,6 @@
 """Binary files of PSU-WOPWOP: 32-bit words without record markers, in either byte order.
 
-Geometry and loading files begin alike, which is here too.
+The opening that geometry and loading files share is here, too.
 """
 
 from __future__ import annotations
@@ -57,9 +57,9 @@ class Layout(NamedTuple):
     Attributes
     ----------
     grid : int
-        Kind of their grids, a key of `GRIDS`.
+        Kind of the zones' grids, a key of `GRIDS`.
     time : int
-        Kind of their dependence on time, a key of `TIMES`.
+        Kind of the zones' dependence on time, a key of `TIMES`.
     at_faces : bool
         True if normals or loads belong to faces, False if to nodes.
     """
@@ -159,9 +159,9 @@ class Writer:
     Parameters
     ----------
     byte_order : str
-        "<" little-endian or ">" big-endian.
+        Byte order: "<" little-endian or ">" big-endian.
     padding : bytes
-        One byte that fills up texts.
+        The byte that fills up texts.
     """
 
     def __init__(self, byte_order: str, padding: bytes) -> None:

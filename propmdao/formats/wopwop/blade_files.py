@@ -27,8 +27,8 @@ def blade_geometry(nodes: ArrayLike | None, loads: BladeLoads | None) -> Geometr
     Returns
     -------
     GeometryFile
-        File of these zones: skin, trailing edge if that has a thickness, root and tip cap, and
-        last the line.
+        File with these zones: skin, trailing edge if it has a thickness, root and tip cap, and last
+        the line.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""Cases of PSU-WOPWOP: observers, sources, how they move and which files the sources have."""
+"""Cases of PSU-WOPWOP: observers and sources, their motion, and the files of the sources."""
 
 from __future__ import annotations
 
@@ -38,9 +38,9 @@ class Container:
     loading : Path or None
         Loading file; a container without one has thickness noise only.
     key_offset : float
-        Offset of its periodic keys, ``periodicKeyOffset``.
+        Offset of the periodic keys of the files, ``periodicKeyOffset``.
     step : float or None
-        Step of the source times [s], its own or that of the container around it.
+        Step of the source times [s], the container's own or that of the container around it.
     """
 
     title: str
@@ -66,7 +66,7 @@ class ObserverGrid:
     times : (n_times,) array
         Observer times [s].
     band_hz : tuple of float
-        High-pass and low-pass frequency, 0 and infinity if not filtered.
+        High-pass and low-pass frequency [Hz], 0 and infinity if not filtered.
     """
 
     title: str
@@ -78,7 +78,7 @@ class ObserverGrid:
 
 @dataclass(frozen=True)
 class Case:
-    """One case.
+    """A case of PSU-WOPWOP: its air, sources and observers.
 
     Attributes
     ----------
@@ -120,7 +120,7 @@ def read_cases(folder: str | Path) -> list[Case]:
     Raises
     ------
     WopwopFileError
-        If a file is missing or describes what is impossible.
+        If a file is missing or describes an impossible case.
     """
     folder = Path(folder)
     groups = read_namelists(folder / "cases.nam")
@@ -138,7 +138,7 @@ def read_cases(folder: str | Path) -> list[Case]:
 
 @dataclass
 class _Parser:
-    """Takes the groups of a case file one after another: their order says who belongs to whom."""
+    """Takes the groups of a case file one after another: their order says what belongs together."""
 
     groups: list[Group]
     position: int = 0

@@ -19,7 +19,7 @@ def corners(grid: Array) -> tuple[Array, Array, Array, Array]:
     Returns
     -------
     tuple of four (..., j_max - 1, i_max - 1, n) arrays
-        Corners in order, from the lowest indices with i first.
+        Values at the corners in order, from the lowest indices with i first.
     """
     low, high = grid[..., :-1, :, :], grid[..., 1:, :, :]
     return low[..., :-1, :], low[..., 1:, :], high[..., 1:, :], high[..., :-1, :]

@@ -20,7 +20,7 @@ class GeometryFile:
     units, comment : str
         Texts of at most 32 and 1024 characters.
     byte_order : str
-        "<" little-endian or ">" big-endian.
+        Byte order: "<" little-endian or ">" big-endian.
     padding : bytes
         The byte that fills up texts.
     """
@@ -48,7 +48,7 @@ def read_geometry(path: str | Path) -> GeometryFile:
     Raises
     ------
     WopwopFileError
-        If the file is not such a file, is truncated or too long.
+        If the file is not a geometry file, is truncated or too long.
     """
     file = Reader(Path(path))
     (units, comment), n_zones, layout = read_opening(file, GEOMETRY)
@@ -68,7 +68,7 @@ def write_geometry(path: str | Path, geometry: GeometryFile) -> None:
     path : str or Path
         File to write.
     geometry : GeometryFile
-        Its contents: all zones are constant, periodic or aperiodic.
+        Contents of the file: all zones are constant, periodic or aperiodic.
 
     Raises
     ------

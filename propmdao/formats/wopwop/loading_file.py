@@ -22,8 +22,8 @@ class LoadingFile:
     zones : tuple of Zone
         Data of the zones in `zone_numbers`.
     zone_numbers : tuple of int
-        Zones of the geometry file that the data belong to, counted from 1; negative if thickness
-        noise is not wanted of that zone.
+        Zones of the geometry file that the data belong to, counted from 1; a negative number asks
+        for no thickness noise of that zone.
     n_geometry_zones : int
         Number of zones of the geometry file.
     data : int
@@ -35,7 +35,7 @@ class LoadingFile:
     comment : str
         Text of at most 1024 characters.
     byte_order : str
-        "<" little-endian or ">" big-endian.
+        Byte order: "<" little-endian or ">" big-endian.
     padding : bytes
         The byte that fills up texts.
     """
@@ -67,7 +67,7 @@ def read_loading(path: str | Path) -> LoadingFile:
     Raises
     ------
     WopwopFileError
-        If the file is not such a file, is truncated or too long.
+        If the file is not a loading file, is truncated or too long.
     """
     file = Reader(Path(path))
     (comment,), n_geometry_zones, layout = read_opening(file, LOADING)
@@ -102,7 +102,7 @@ def write_loading(path: str | Path, loading: LoadingFile) -> None:
     path : str or Path
         File to write.
     loading : LoadingFile
-        Its contents: all zones are constant, periodic or aperiodic.
+        Contents of the file: all zones are constant, periodic or aperiodic.
 
     Raises
     ------

@@ -23,7 +23,7 @@ class PressureHistories:
     time : (n_observers, n_times) array
         Observer times [s].
     thickness, loading, total : (n_observers, n_times) arrays
-        Pressure [Pa].
+        Pressure of thickness noise, of loading noise and of both [Pa].
     """
 
     position: NDArray[np.float64]
@@ -45,12 +45,12 @@ def read_pressure(stem: str | Path) -> PressureHistories:
     Returns
     -------
     PressureHistories
-        Pressures of the observers, those with i fastest, then j.
+        Pressures of the observers, in the order of the grid with i fastest, then j.
 
     Raises
     ------
     WopwopFileError
-        If a file is missing, holds no numbers or not as many as its header says.
+        If a file is missing, or holds no numbers or another count of them than its header says.
     """
     if Path(stem).suffix == ".tec":
         return _single(Path(stem))

@@ -1,4 +1,4 @@
-"""From zones of files to the sources of Formulation 1A at given source times."""
+"""Sources of Formulation 1A at given source times, made from the zones of files."""
 
 from __future__ import annotations
 
@@ -34,16 +34,16 @@ def thickness_sources(zone: Zone, tau: Array, key_offset: float = 0.0) -> Unstea
     Parameters
     ----------
     zone : Zone
-        Of a geometry file.
+        Surface zone of a geometry file.
     tau : (n_times,) array
         Source times [s].
     key_offset : float
-        Added to the keys of periodic zones at all times (``periodicKeyOffset``).
+        Offset added to the keys of periodic zones at all times (``periodicKeyOffset``).
 
     Returns
     -------
     UnsteadySources
-        Centres and outward vector areas of the cells of the grid; one time if constant.
+        Panels by centres and outward vector areas of the cells of the grid; one time if constant.
 
     Raises
     ------
@@ -68,18 +68,20 @@ def loading_sources(
     Parameters
     ----------
     geometry, loading : Zone
-        The zone in the geometry file, and its data.
+        Zone of the geometry file, and the data of the loading file for it.
     file : LoadingFile
-        Where the data are from: their kind, place and frame.
+        Loading file that the data are from, with their kind, place and frame.
     tau, key_offset
-        As in `thickness_sources`.
+        Source times [s], and the offset added to the keys of periodic zones
+        (``periodicKeyOffset``).
     motion : Motion
-        Of the zone, for data that are given in the ground's frame.
+        Motion of the zone, for data that are given in the ground's frame.
 
     Returns
     -------
     UnsteadySources
-        At the nodes of a line (its lengths by the trapezoidal rule), at the cells of a surface.
+        Forces at the nodes of a line (its lengths by the trapezoidal rule) or at the cells of a
+        surface.
 
     Raises
     ------
@@ -158,20 +160,20 @@ def _line(zone: Zone) -> tuple[Array, Array]:
 
 
 def _density(geometry: Zone, loading: Zone, at_faces: bool, line: bool) -> Array:
-    """Return what is given per area or length where the sources are, (n_times, n, 1 or 3)."""
-    given = np.moveaxis(loading.values.astype(float), 1, -1)
+    """Return the data per area or length at the places of the sources, (n_times, n, 1 or 3)."""
+    density = np.moveaxis(loading.values.astype(float), 1, -1)
     wanted = geometry.values.shape[2:]
     if at_faces and not line:
         wanted = (len(geometry.faces),) if geometry.faces else tuple(n - 1 for n in wanted)
-    if given.shape[1:-1] != wanted:
-        sizes = (" x ".join(map(str, size[::-1])) for size in (wanted, given.shape[1:-1]))
+    if density.shape[1:-1] != wanted:
+        sizes = (" x ".join(map(str, size[::-1])) for size in (wanted, density.shape[1:-1]))
         raise ValueError(
             f"data of zone {loading.name!r} must be {next(sizes)} to fit its geometry; "
             f"they are {next(sizes)}"
         )
     if not line and not at_faces:
-        given = _at_cells(geometry, given)
-    return np.asarray(given.reshape(len(given), -1, given.shape[-1]))
+        density = _at_cells(geometry, density)
+    return np.asarray(density.reshape(len(density), -1, density.shape[-1]))
 
 
 def _at_cells(zone: Zone, at_nodes: Array) -> Array:

@@ -1,4 +1,4 @@
-"""Cases of ours for PSU-WOPWOP: namelists and files of rotors, observers and their motion."""
+"""Cases for PSU-WOPWOP: namelists and files of rotors, observers and their motion."""
 
 from __future__ import annotations
 
@@ -36,11 +36,12 @@ def write_rotor_case(
     Parameters
     ----------
     folder : str or Path
-        Folder to write to; made if it is not there. Files of the same names are replaced.
+        Folder to write to, made if it does not exist; files of the same names are replaced.
     rotors : sequence of Rotor
         Rotors of one aircraft; their panels are not used.
     surfaces : sequence of (n_contour, n_span, 3) array_like or None
-        Points of `surface_nodes` of the blade of each rotor [m]; without them no thickness noise.
+        Points of `surface_nodes` of the blade of each rotor [m]; without them there is no thickness
+        noise.
     observers : Observers
         Observers at rest or in uniform motion.
     times : (n_times,) array_like
@@ -107,8 +108,8 @@ def _observers(observers: Observers, clock: np.ndarray) -> Groups:
         }
         groups.append(("ObserverIn", values))
         if moving:
-            way = {"TranslationType": "KnownFunction", "VH": _list(observers.velocity)}
-            groups.append(("CB", {"title": "observer motion"} | way))
+            translation = {"TranslationType": "KnownFunction", "VH": _list(observers.velocity)}
+            groups.append(("CB", {"title": "observer motion"} | translation))
     return groups
 
 

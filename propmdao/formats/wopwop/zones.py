@@ -86,7 +86,7 @@ def layout_of(zones: Sequence[Zone], at_faces: bool) -> Layout:
     Returns
     -------
     Layout
-        Layout that all of them have.
+        Layout that all of the zones have.
 
     Raises
     ------
@@ -124,12 +124,12 @@ def read_header(file: Reader, layout: Layout, has_faces: bool) -> ZoneHeader:
     Returns
     -------
     ZoneHeader
-        The header as it stands.
+        Header of the zone.
 
     Raises
     ------
     WopwopFileError
-        If a face has fewer than three nodes or one that there is not.
+        If a face has fewer than three nodes or a node that does not exist.
     """
     name = file.text(32)
     period = float(file.floats(1)[0]) if layout.time == PERIODIC else None
@@ -214,7 +214,7 @@ def write_zones(out: Writer, zones: Sequence[Zone]) -> None:
     Parameters
     ----------
     out : Writer
-        Writer behind the numbers of the file's own.
+        Writer at the place where the zones begin.
     zones : sequence of Zone
         Zones with one layout.
     """

@@ -212,7 +212,7 @@ def naca4_from_name(name: str) -> Airfoil:
     Raises
     ------
     AirfoilError
-        If the name is no NACA 4-digit name, or names no thickness.
+        If the name is not that of a NACA 4-digit section, or names no thickness.
     """
     match = re.fullmatch(r"naca(\d)(\d)(\d\d)", name)
     if match is None:
@@ -237,6 +237,6 @@ def max_camber_for_design_lift(design_lift: float, position: float = 0.4) -> flo
     Returns
     -------
     float
-        Maximum camber over chord; 0.767 at 0.4 c gives 0.06.
+        Maximum camber over chord; a design lift coefficient of 0.767 at 0.4 c gives 0.06.
     """
     return design_lift / float(naca4_camber_line(1.0, position) @ DESIGN_LIFT_WEIGHTS)
