@@ -48,6 +48,9 @@ class SectionStates:
     lift_coefficient, drag_coefficient : (ns,) arrays
         Lift and drag coefficients of the section; without polars the lift is the lattice's and
         the drag 0.
+    borrowed_lift : (ns,) array
+        Lift coefficient that the mean over the span nearby adds to what the section's own polar
+        has at its angle of attack.
     residual : (ns,) array
         Lift coefficient of the lattice less that of the polar: 0 where they agree.
     """
@@ -56,6 +59,7 @@ class SectionStates:
     angle_of_attack: Array
     lift_coefficient: Array
     drag_coefficient: Array
+    borrowed_lift: Array
     residual: Array
 
 
@@ -106,11 +110,12 @@ def section_states(flow: StripFlow, recambering: Array, laws: SectionLaws | None
         Flow of the sections, and the residual that the recambering has to bring to zero.
     """
     alpha, lift = flow.angle_and_lift(recambering)
-    held, cd = lift, jnp.zeros_like(lift)
+    held, cd, borrowed = lift, jnp.zeros_like(lift), jnp.zeros_like(lift)
     if laws is not None:
         more, cd = laws.beyond_thin(alpha)
+        borrowed = laws.mean @ more - more
         held = laws.thin(alpha) + laws.mean @ more
-    return SectionStates(flow.relative_speed, alpha, held, cd, lift - held)
+    return SectionStates(flow.relative_speed, alpha, held, cd, borrowed, lift - held)
 
 
 def solve_recambering(flow: StripFlow, laws: SectionLaws) -> Array:

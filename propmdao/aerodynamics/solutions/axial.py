@@ -25,7 +25,12 @@ from propmdao.aerodynamics.solutions.lattice_loads import (
     lattice_geometry,
     loads_with_wake,
 )
-from propmdao.aerodynamics.solutions.result import SETTLED, RotorLoads, strip_loads
+from propmdao.aerodynamics.solutions.result import (
+    MOST_BORROWED_LIFT,
+    SETTLED,
+    RotorLoads,
+    strip_loads,
+)
 from propmdao.aerodynamics.solutions.roots import at_root, decreasing_root
 from propmdao.aerodynamics.vortices.cores import core_radius
 from propmdao.aerodynamics.wakes.helical import helical_wake
@@ -263,6 +268,7 @@ def rotor_loads(
     windmilling_limit = -0.5 * area * state.air.density * state.speed**2
     within_momentum_theory = (state.speed == 0.0) | (thrust > windmilling_limit)
     settled = jnp.abs(loads.sections.residual).max() < SETTLED
+    plausible = jnp.abs(loads.sections.borrowed_lift).max() < MOST_BORROWED_LIFT
     strip_thrust, strip_torque = strip_loads(loads)
     return RotorLoads(
         thrust=thrust,
@@ -274,7 +280,7 @@ def rotor_loads(
         point_loads=PointLoads(loads.position, -loads.force),
         strips=flow.lattice.strips,
         sections=loads.sections,
-        converged=agrees & within_momentum_theory & settled,
+        converged=agrees & within_momentum_theory & settled & plausible,
     )
 
 

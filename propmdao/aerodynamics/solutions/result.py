@@ -13,6 +13,11 @@ from propmdao.records.loads import PointLoads
 from propmdao.records.pytrees import record
 
 SETTLED = 1.0e-6  # difference of lift coefficients of lattice and polars that counts as none
+# Lift coefficient that a section may have beyond its own polar, by the mean over the span nearby.
+# Smooth blades have at most 1.1, stalled or not, and blades of random chord and twist 1.6; where
+# these zigzag so much that the equations have other roots, those have 3 to 8 (residuals do not see
+# it: they are 1e-14 there, too).
+MOST_BORROWED_LIFT = 2.0
 
 
 @record
@@ -36,7 +41,7 @@ class RotorLoads:
         Sections of blade 1, and their flow, lift and drag.
     converged : bool
         Whether thrust and induced velocity agree with momentum theory, and lattice and polars on
-        the lift of every section; `failure` says what does not.
+        the lift of every section, which is one that the polar can have; `failure` says what does not.
     """
 
     thrust: Array
@@ -72,6 +77,15 @@ def failure(solution: RotorLoads) -> str | None:
         return (
             f"lift coefficients of lattice and polar differ by {residual[worst]:.2g} at r/R "
             f"{float(solution.strips.r_over_R[worst]):.2f}"
+        )
+    borrowed = np.abs(np.asarray(solution.sections.borrowed_lift))
+    worst = int(np.argmax(borrowed))
+    if not borrowed[worst] < MOST_BORROWED_LIFT:
+        lift = float(solution.sections.lift_coefficient[worst])
+        return (
+            f"section lift coefficient {lift:.2f} at r/R "
+            f"{float(solution.strips.r_over_R[worst]):.2f} is beyond its polar: chord or twist"
+            " changes too much from station to station for one solution"
         )
     return (
         f"thrust {float(solution.thrust):.4g} N and induced velocity "
