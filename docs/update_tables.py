@@ -16,22 +16,15 @@ import sys
 from collections.abc import Callable
 from functools import partial
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
-from propmdao.acoustics.kinematics.observers import arc
-from propmdao.aerodynamics.sections.laws import viscous_sections
-from propmdao.aerodynamics.sections.polars.propeller_polars import polars_for
-from propmdao.aerodynamics.solutions.axial import WAKE_AGES, solve_steady
+import propmdao as pm
+from propmdao.aerodynamics.solutions.result import RotorLoads
 from propmdao.aerodynamics.wakes.ages import wake_azimuths
 from propmdao.analysis.comparisons import Rows, markdown
-from propmdao.analysis.single_point import SOUND_SPEED, analyze
 from propmdao.analysis.wind_tunnel import Points, calibrated_twist_deg, computed
-from propmdao.formats.propellers import load_propeller
-from propmdao.geometry.blade import Blade
-from propmdao.geometry.lattice import lattice_interpolation, lattice_nodes, strip_interpolation
-from propmdao.propeller.description import Propeller
-from propmdao.records.units import RAD_PER_S
 
 HERE = Path(__file__).parent
 sys.path.insert(0, str(HERE.parent / "studies"))
@@ -41,21 +34,12 @@ import gradient_tables  # noqa: E402
 import hover_noise as hover_noise_study  # noqa: E402
 import wake_transport as wake_study  # noqa: E402
 
-SLOW_FLYER = load_propeller("apcsf_11x4.7")
-RADIUS, DENSITY = 0.1397, 1.225
-DEG = np.pi / 180.0
+SLOW_FLYER = pm.load_propeller("apcsf_11x4.7")
 
 
-def solve(speed: float, n_chordwise: int = 8, n_spanwise: int = 24, ages: np.ndarray = WAKE_AGES):
-    """Steady solution of the slow flyer at 4200 rpm on a lattice, in a wake."""
-    blade, stations = Blade.from_propeller(SLOW_FLYER), SLOW_FLYER.r_over_R
-    span = lattice_interpolation(stations, n_spanwise)
-    strips = strip_interpolation(stations, n_spanwise)
-    nodes = lattice_nodes(blade, span, n_chordwise)
-    sections = viscous_sections(polars_for(SLOW_FLYER), blade, strips, SOUND_SPEED)
-    return solve_steady(
-        nodes, 2, RADIUS, 4200.0 * RAD_PER_S, speed, DENSITY, sections, wake_ages=ages
-    )
+def solve(speed: float, **fidelity: Any) -> RotorLoads:
+    """Loads of the slow flyer at 4200 rpm, with some fields of `Fidelity` that are not default."""
+    return pm.analyze(SLOW_FLYER, rpm=4200.0, speed=speed, fidelity=pm.Fidelity(**fidelity)).loads
 
 
 def targets() -> Rows:
@@ -88,31 +72,31 @@ def lattice_convergence() -> Rows:
     """Thrust and torque for other numbers of panels, against the default 8 x 24."""
     rows: Rows = [("panels", "hover T", "hover Q", "8 m/s T", "8 m/s Q")]
     base = {v: solve(v) for v in (0.0, 8.0)}
-    for panels in ((4, 24), (6, 24), (12, 24), (16, 24), (8, 12), (8, 16), (8, 36), (8, 48)):
-        cells = [change(solve(v, *panels), base[v]) for v in base]
-        rows.append((f"{panels[0]} x {panels[1]}", *(c for pair in cells for c in pair)))
+    for nc, ns in ((4, 24), (6, 24), (12, 24), (16, 24), (8, 12), (8, 16), (8, 36), (8, 48)):
+        cells = [change(solve(v, n_chordwise=nc, n_spanwise=ns), base[v]) for v in base]
+        rows.append((f"{nc} x {ns}", *(cell for pair in cells for cell in pair)))
     return rows
 
 
 def wake_convergence() -> Rows:
     """Thrust and torque for other wakes, against the finest."""
     rows: Rows = [("turns", "steps, deg", "nodes", "hover T", "hover Q", "8 m/s T", "8 m/s Q")]
-    finest = (16, 2, 1.03, 10)
-    base = {v: solve(v, ages=_ages(*finest)) for v in (0.0, 8.0)}
-    for wake in ((4, 10, 1.1, 30), (6, 10, 1.1, 30), (8, 10, 1.1, 30), (12, 10, 1.1, 30),
-                 (6, 15, 1.0, 15), (6, 10, 1.0, 10), (6, 5, 1.05, 15), finest):  # fmt: skip
-        ages = _ages(*wake)
-        cells = [change(solve(v, ages=ages), base[v]) for v in base]
-        steps = f"{wake[1]} to {wake[3]}"
-        rows.append((str(wake[0]), steps, str(len(ages)), *(c for pair in cells for c in pair)))
+    finest = pm.WakeGrid(16, 2, 1.03, 10)
+    base = {v: solve(v, wake=finest) for v in (0.0, 8.0)}
+    for wake in (
+        *(pm.WakeGrid(turns, 10, 1.1, 30) for turns in (4, 6, 8, 12)),
+        *(pm.WakeGrid(6, *steps) for steps in ((15, 1.0, 15), (10, 1.0, 10), (5, 1.05, 15))),
+        finest,
+    ):
+        cells = [change(solve(v, wake=wake), base[v]) for v in base]
+        rows.append(
+            (f"{wake.turns}", f"{wake.first_step_deg} to {wake.last_step_deg}",
+             f"{len(wake_azimuths(wake))}", *(cell for pair in cells for cell in pair))
+        )  # fmt: skip
     return rows
 
 
-def _ages(turns: float, first: float, growth: float, last: float) -> np.ndarray:
-    return wake_azimuths(turns, first * DEG, growth, last * DEG)
-
-
-def change(solution, base) -> tuple[str, str]:
+def change(solution: RotorLoads, base: RotorLoads) -> tuple[str, ...]:
     """Differences in thrust and torque in per cent."""
     return tuple(
         f"{100.0 * float(getattr(solution, name) / getattr(base, name) - 1.0):+.2f} %"
@@ -121,7 +105,7 @@ def change(solution, base) -> tuple[str, str]:
 
 
 def wake_transport() -> Rows:
-    """The wake that moves as it says, and the prescribed one beside it."""
+    """The wake that moves as it itself and the blades induce, and the prescribed one beside it."""
     return _formatted(wake_study.compare(wake_study.CASES), wake_study.FORMATS)
 
 
@@ -132,8 +116,8 @@ def ideal_disk() -> Rows:
         cells = []
         for viscous in (False, True):
             speed = j * 4003 / 60.0 * SLOW_FLYER.diameter
-            result = analyze(SLOW_FLYER, rpm=4003.0, speed=speed, viscous=viscous).to_dict()
-            disk = 2.0 * DENSITY * np.pi * RADIUS**2
+            result = pm.analyze(SLOW_FLYER, rpm=4003.0, speed=speed, viscous=viscous).to_dict()
+            disk = 0.5 * result["rho"] * np.pi * SLOW_FLYER.diameter**2
             w = -0.5 * speed + np.sqrt(0.25 * speed**2 + result["thrust"] / disk)
             ideal = result["thrust"] * (speed + w)
             cells += [f"{result['CT']:.4f}", f"{result['shaft_power'] / ideal:.3f}"]
@@ -168,7 +152,7 @@ def run_4003() -> Rows:
     twist = calibrated_twist_deg(SLOW_FLYER, tunnel.static)
     published, calibrated = (computed(SLOW_FLYER, run, offset) for offset in (0.0, twist))
     inviscid = computed(SLOW_FLYER, run, viscous=False)
-    thesis = computed(load_propeller("apcsf_11x4.7_thesis"), run)
+    thesis = computed(pm.load_propeller("apcsf_11x4.7_thesis"), run)
     columns: dict[str, Points] = {
         "UIUC": run, "published": published, "calibrated": calibrated, "inviscid": inviscid,
         "thesis' sections": thesis,
@@ -198,7 +182,7 @@ def twist_needed() -> Rows:
         tunnel = study.chosen(aerodynamic_validation.measurements(case))
         for part in (tunnel.static, tunnel.dynamic[tunnel.dynamic.J <= 0.5]):
             for rpm, j, twist, cp in zip(
-                part.rpm, part.J, *study.twist_needed(load_propeller(case), part), strict=True
+                part.rpm, part.J, *study.twist_needed(pm.load_propeller(case), part), strict=True
             ):
                 rows.append((case, f"{rpm:.0f}", f"{j:.3f}", f"{twist:+.2f}", f"{cp:+.1f}"))
     return rows
@@ -212,7 +196,7 @@ def hover_noise() -> Rows:
 def design_point() -> Rows:
     """The thesis' design point: 8 m/s, 4200 rpm."""
 
-    def with_sections(airfoil: str) -> Propeller:
+    def with_sections(airfoil: str) -> pm.Propeller:
         return dataclasses.replace(
             SLOW_FLYER, airfoils=((0.15, airfoil),), thickness_over_chord=None
         )
@@ -220,12 +204,12 @@ def design_point() -> Rows:
     rows: Rows = [("sections", "flow", "T, N", "CT", "CQ", "thickness tone, dB")]
     for label, propeller in {
         "catalogue": SLOW_FLYER,
-        "thesis, E63 to Clark-Y": load_propeller("apcsf_11x4.7_thesis"),
+        "thesis, E63 to Clark-Y": pm.load_propeller("apcsf_11x4.7_thesis"),
         "NACA 4412": with_sections("naca4412"),
     }.items():
         for flow, viscous in (("viscous", True), ("inviscid", False)):
-            result = analyze(
-                propeller, rpm=4200.0, speed=8.0, viscous=viscous, observers=arc(1.905, [-45.0])
+            result = pm.analyze(
+                propeller, rpm=4200.0, speed=8.0, viscous=viscous, observers=pm.arc(1.905, -45.0)
             ).to_dict()
             thickness = result["observers"][0]["harmonics"][0]["spl_thickness_db"]
             rows.append(

@@ -21,7 +21,7 @@ import numpy as np
 from rich.console import Console
 from rich.table import Table
 
-from propmdao.acoustics.kinematics.observers import arc
+import propmdao as pm
 from propmdao.acoustics.levels.decibels import energy_sum_db, level_db, spl_db
 from propmdao.acoustics.sounds.recordings import (
     SAMPLE_RATE,
@@ -30,13 +30,11 @@ from propmdao.acoustics.sounds.recordings import (
     tone_record,
 )
 from propmdao.analysis.self_noise import BANDS_HZ
-from propmdao.analysis.single_point import Analysis, analyze
 from propmdao.figures.directivity import directivity
 from propmdao.figures.of_analysis import analysis_sound, mechanism_levels
 from propmdao.figures.pressure import pressure, sampled
 from propmdao.figures.sound import Sound, band_levels, source_levels
 from propmdao.figures.spectra import narrowband_spectrum, third_octaves
-from propmdao.formats.propellers import load_propeller
 from propmdao.formats.wav import write_wav
 
 PROPELLER = "apcsf_11x4.7"
@@ -74,7 +72,7 @@ class Comparison(NamedTuple):
 class Hover(NamedTuple):
     """Analysis at one rotation speed: observers at the microphones, then on the arc."""
 
-    analysis: Analysis
+    analysis: pm.Analysis
     elevation_deg: np.ndarray
     n_microphones: int
 
@@ -96,10 +94,10 @@ def hover(rpm: float, test: Mapping[str, Any], arc_deg: np.ndarray) -> Hover:
     """Analyse the propeller where it was measured, and on an arc."""
     microphones = test["blade_passage"]["elevation_deg"]
     elevation = np.array([*microphones, *arc_deg])
-    points = [(test["radius"], angle) for angle in elevation]
-    analysis = analyze(
-        load_propeller(PROPELLER), rpm=rpm, density=DENSITY, broadband=True, observers=points
-    )
+    analysis = pm.analyze(
+        pm.load_propeller(PROPELLER), rpm=rpm, density=DENSITY, broadband=True,
+        observers=pm.arc(test["radius"], elevation),
+    )  # fmt: skip
     return Hover(analysis, elevation, len(microphones))
 
 
@@ -130,16 +128,16 @@ def tone_errors(hovers: Mapping[int, Hover], test: Mapping[str, Any]) -> list[li
     return [*table, mean]
 
 
-def band_comparisons(computed: Mapping[int, Hover], test: Mapping[str, Any]) -> list[Comparison]:
-    """Third octaves wherever they were measured: of the rotor's broadband noise, and of all."""
-    found = []
-    for what, key in (("broadband", "broadband_third_octave"), ("total", "third_octave")):
-        for known in (one for one in test[key] if one["rpm"] in computed):
-            at, angle = computed[known["rpm"]], known["elevation_deg"]
-            sound, i = at.sound, at.observer(angle)
-            noise = sound.broadband[i]
-            level = level_db(noise) if what == "broadband" else band_levels(sound, i)
-            nominal, spl = np.array(known["frequency_hz"], float), np.array(known["spl_db"])
+def band_comparisons(hovers: Mapping[int, Hover], test: Mapping[str, Any]) -> list[Comparison]:
+    """Third octaves where they were measured: of the rotor's broadband noise, and of all noise."""
+    comparisons = []
+    for noise, key in (("broadband", "broadband_third_octave"), ("total", "third_octave")):
+        for spectrum in (bands for bands in test[key] if bands["rpm"] in hovers):
+            hovering, angle = hovers[spectrum["rpm"]], spectrum["elevation_deg"]
+            sound, i = hovering.sound, hovering.observer(angle)
+            power = sound.broadband[i]
+            level = level_db(power) if noise == "broadband" else band_levels(sound, i)
+            nominal, spl = np.array(spectrum["frequency_hz"], float), np.array(spectrum["spl_db"])
             # Nominal frequencies and exact ones have the same number.
             number, ours = (np.round(10 * np.log10(f / 1000)) for f in (nominal, BANDS_HZ))
             _, here, there = np.intersect1d(number, ours, return_indices=True)
@@ -179,7 +177,7 @@ def _verdict(name: str, size: float, target: float) -> str:
 
 
 def records(sound: Sound, observer: int) -> dict[str, np.ndarray]:
-    """Sound of a propeller, with its noise and the tones alone [Pa]."""
+    """Pressure of a propeller's sound, with its noise and the tones alone [Pa]."""
     tones = tone_record(sound.tones.frequency_hz, sound.tones.total[observer], SECONDS)
     noise = broadband_record(sound.bands_hz, sound.broadband[observer], tones.size)
     return {"with broadband noise": tones + noise, "tones alone": tones}
@@ -189,9 +187,11 @@ def two_blades(thrust: float, distance: float, output: Path) -> dict[str, dict[s
     """Write the sound of two propellers of the same thrust, with one full scale."""
     blades, analyses = {}, {}
     for name in (PROPELLER, OTHER):
-        analysis = analyze(load_propeller(name), thrust=thrust, density=DENSITY, broadband=True,
-                           observers=arc(distance, [MICROPHONE]))  # fmt: skip
-        found[name] = analysis
+        analysis = pm.analyze(
+            pm.load_propeller(name), thrust=thrust, density=DENSITY, broadband=True,
+            observers=pm.arc(distance, MICROPHONE),
+        )  # fmt: skip
+        analyses[name] = analysis
         blades[f"{name}, {analysis.rpm:.0f} rpm"] = records(analysis_sound(analysis), 0)
     full = common_full_scale(*(sound["with broadband noise"] for sound in blades.values()))
     for (name, analysis), sound in zip(analyses.items(), blades.values(), strict=True):
@@ -207,15 +207,16 @@ def draw(hovers: Mapping[int, Hover], bands: Sequence[Comparison], test: Mapping
     """Draw figures 4.12 to 4.15 of the thesis."""
     shown = hovers[RPM]
     arc = shown.on_arc(shown.elevation_deg)
-    names = {rpm: f"{rpm} rpm" for rpm in computed}
-    at = shown.observer(MICROPHONE)
+    names = {rpm: f"{rpm} rpm" for rpm in hovers}
+    observer = shown.observer(MICROPHONE)
     narrowband_spectrum(
-        {names[rpm]: one.sound for rpm, one in computed.items()}, at
+        {names[rpm]: hovering.sound for rpm, hovering in hovers.items()}, observer
     ).savefig(output / "figure_4_12_spectrum.png")  # fmt: skip
 
-    known = {one.what: (one.frequency_hz, one.measured_db) for one in bands
-             if (one.rpm, one.elevation_deg) == (RPM, MICROPHONE)}  # fmt: skip
-    third_octaves(BANDS_HZ, mechanism_levels(shown.analysis, at), known).savefig(
+    measured = {comparison.noise: (comparison.frequency_hz, comparison.measured_db)
+                for comparison in bands
+                if (comparison.rpm, comparison.elevation_deg) == (RPM, MICROPHONE)}  # fmt: skip
+    third_octaves(BANDS_HZ, mechanism_levels(shown.analysis, observer), measured).savefig(
         output / "figure_4_13_third_octaves.png"
     )
 
@@ -223,18 +224,26 @@ def draw(hovers: Mapping[int, Hover], bands: Sequence[Comparison], test: Mapping
     directivity(
         arc, {name: shown.on_arc(level) for name, level in sources.items()}
     ).savefig(output / "figure_4_14a_sources.png")  # fmt: skip
-    overall = {names[rpm]: one.on_arc(source_levels(one.sound)["total"])
-               for rpm, one in computed.items()}  # fmt: skip
-    measured = {names[one.rpm]: ([one.elevation_deg], [float(energy_sum_db(one.measured_db))])
-             for one in bands if one.what == "total"}  # fmt: skip
-    directivity(arc, overall, measured).savefig(output / "figure_4_14b_total.png")
+    overall = {names[rpm]: hovering.on_arc(source_levels(hovering.sound)["total"])
+               for rpm, hovering in hovers.items()}  # fmt: skip
+    measured_overall = {
+        names[comparison.rpm]: (
+            [comparison.elevation_deg],
+            [float(energy_sum_db(comparison.measured_db))],
+        )
+        for comparison in bands
+        if comparison.noise == "total"
+    }
+    directivity(arc, overall, measured_overall).savefig(output / "figure_4_14b_total.png")
 
     passage = test["blade_passage"]
-    tone = {names[rpm]: one.on_arc(np.asarray(spl_db(one.analysis.tones.total[:, 0])))
-            for rpm, one in computed.items()}  # fmt: skip
-    known = {f"{rpm} rpm": (passage["elevation_deg"], level)
-             for rpm, level in zip(passage["rpm"], passage["spl_db"], strict=True)}  # fmt: skip
-    directivity(arc, tone, known, "SPL at blade passage").savefig(
+    tone = {names[rpm]: hovering.on_arc(np.asarray(spl_db(hovering.analysis.tones.total[:, 0])))
+            for rpm, hovering in hovers.items()}  # fmt: skip
+    measured_tone = {
+        f"{rpm} rpm": (passage["elevation_deg"], level)
+        for rpm, level in zip(passage["rpm"], passage["spl_db"], strict=True)
+    }
+    directivity(arc, tone, measured_tone, "SPL at blade passage").savefig(
         output / "figure_4_15_blade_passage.png"
     )
 
@@ -278,8 +287,8 @@ def main() -> None:
         table.add_row(*(row[k] for k in columns))
     Console(highlight=False).print(table)
     print(*verdicts(tones, bands), sep="\n")
-    draw(computed, bands, test, output)
-    blades = two_blades(float(computed[RPM].analysis.loads.thrust), test["radius"], output)
+    draw(hovers, bands, test, output)
+    blades = two_blades(float(hovers[RPM].analysis.loads.thrust), test["radius"], output)
     turns = {name: sampled(sound, SAMPLE_RATE, 60.0 / RPM) for name, sound in blades.items()}
     pressure(turns).savefig(output / "pressure.png")
     print(f"Tables, figures and sound: {output}")

@@ -1,8 +1,8 @@
-"""What the differences to the wind tunnel depend on.
+"""Sensitivity of the differences to the wind tunnel to what is not known for sure.
 
-Of APC-SF 11x4.7 and APC-E 10x7, one thing at a time is changed that is not known for sure: twist,
-sections, stall delay, transition, transport of the wake. Then the question is turned round: which
-twist offset would each measured CT need, and is the power right where the thrust is?
+APC-SF 11x4.7 and APC-E 10x7 are computed with one thing changed at a time: twist, sections, stall
+delay, transition, drift of the wake. Then the question is turned round: which twist offset would
+each measured CT need, and is the power right where the thrust is?
 
 Nothing here is fitted, and nothing of it is in the catalogue.
 """
@@ -17,6 +17,7 @@ from typing import Any
 import numpy as np
 from aerodynamic_validation import measurements, show, write_csv
 
+import propmdao as pm
 from propmdao.aerodynamics.sections.polars import neuralfoil_tables
 from propmdao.analysis.wind_tunnel import (
     Evaluate,
@@ -27,9 +28,6 @@ from propmdao.analysis.wind_tunnel import (
     errors,
 )
 from propmdao.figures import comparisons
-from propmdao.formats.propellers import load_propeller
-from propmdao.propeller.description import Propeller
-from propmdao.records.wake_law import WakeLaw
 
 PITCH = {"apcsf_11x4.7": 0.11938, "apce_10x7": 0.1778}  # m, the maker's: 4.7 and 7 in
 OUTBOARD = 0.55  # r/R from which the maker's table of the sister 10x7SF has its nominal pitch
@@ -44,7 +42,9 @@ def chosen(tunnel: WindTunnel) -> WindTunnel:
     return dataclasses.replace(tunnel, static=tunnel.static[::3], dynamic=tunnel.dynamic[::6])
 
 
-def variants(propeller: Propeller, with_n_crit: bool) -> Iterator[tuple[str, Propeller, Evaluate]]:
+def variants(
+    propeller: pm.Propeller, with_n_crit: bool
+) -> Iterator[tuple[str, pm.Propeller, Evaluate]]:
     """The propeller with one thing changed, and how it is analysed."""
     change = partial(dataclasses.replace, propeller)
     beta, r = propeller.beta_deg, propeller.r_over_R
@@ -61,11 +61,11 @@ def variants(propeller: Propeller, with_n_crit: bool) -> Iterator[tuple[str, Pro
         if airfoils != tuple(propeller.airfoils):
             yield f"sections {label}", change(airfoils=airfoils), computed
     if propeller.name == "apcsf_11x4.7":
-        yield "sections of the thesis", load_propeller("apcsf_11x4.7_thesis"), computed
+        yield "sections of the thesis", pm.load_propeller("apcsf_11x4.7_thesis"), computed
     yield "no stall delay", propeller, partial(computed, stall_delay=False)
     for n_crit in N_CRIT if with_n_crit else ():
         yield f"n_crit {n_crit:g}", propeller, partial(computed, n_crit=n_crit)
-    law = WakeLaw()
+    law = pm.WakeLaw()
     for factor in (0.75, 1.5):
         drift = {
             name: factor * getattr(law, name)
@@ -77,37 +77,39 @@ def variants(propeller: Propeller, with_n_crit: bool) -> Iterator[tuple[str, Pro
 
 def sensitivities(case: str, tunnel: WindTunnel, with_n_crit: bool) -> list[dict[str, Any]]:
     """Mean errors of every variant in per cent; then calibrated on static CT."""
-    rows, propeller, both = [], load_propeller(case), (tunnel.static, tunnel.dynamic)
+    rows, propeller = [], pm.load_propeller(case)
     for label, blade, evaluate in variants(propeller, with_n_crit):
         twist = calibrated_twist_deg(blade, tunnel.static, evaluate)
         published, calibrated = (
-            _mean(tunnel, *(evaluate(blade, of, offset) for of in both)) for offset in (0.0, twist)
-        )
+            _mean(tunnel, evaluate(blade, tunnel.static, offset),
+                  evaluate(blade, tunnel.dynamic, offset))
+            for offset in (0.0, twist)
+        )  # fmt: skip
         then = {"then CT": calibrated["CT to J 0.5"], "then CP": calibrated["CP to J 0.5"]}
         rows.append({"changed": label, **published, "twist": twist, **then})
     return rows
 
 
 def _mean(tunnel: WindTunnel, static: Points, dynamic: Points) -> dict[str, float]:
-    of = errors(tunnel, static, dynamic)
-    named = {"static CT": of.static_ct, "static CP": of.static_cp, "CT to J 0.5": of.low_ct,
-             "CP to J 0.5": of.low_cp}  # fmt: skip
+    difference = errors(tunnel, static, dynamic)
+    named = {"static CT": difference.static_ct, "static CP": difference.static_cp,
+             "CT to J 0.5": difference.low_ct, "CP to J 0.5": difference.low_cp}  # fmt: skip
     means = {name: 100.0 * float(np.nanmean(values)) for name, values in named.items()}
-    return means | {"trend": of.trend}
+    return means | {"trend": difference.trend}
 
 
-def twist_needed(propeller: Propeller, measured: Points) -> tuple[np.ndarray, np.ndarray]:
+def twist_needed(propeller: pm.Propeller, measured: Points) -> tuple[np.ndarray, np.ndarray]:
     """Twist offset [deg] that gives each measured CT, and the error of CP with it [%]."""
     twist, cp = np.zeros((2, measured.rpm.size))
     for i in range(measured.rpm.size):
-        one = measured[i : i + 1]
-        twist[i] = calibrated_twist_deg(propeller, one)
-        cp[i] = 100.0 * (computed(propeller, one, twist[i]).CP[0] / one.CP[0] - 1.0)
+        point = measured[i : i + 1]
+        twist[i] = calibrated_twist_deg(propeller, point)
+        cp[i] = 100.0 * (computed(propeller, point, twist[i]).CP[0] / point.CP[0] - 1.0)
     return twist, cp
 
 
 def fits_over_rpm(rpm: np.ndarray, twist: np.ndarray) -> str:
-    """How well two laws describe the twist needed in hover."""
+    """Say how well two laws describe the twist needed in hover."""
     lines = []
     for name, x in (("rpm^2", rpm**2), ("log rpm", np.log(rpm))):
         left = twist - np.polyval(np.polyfit(x, twist, 1), x)
@@ -134,8 +136,8 @@ def main() -> None:
         print(f"\n{case}: mean errors in %; the same calibrated on static CT (twist in deg)")
         show(rows, FORMATS)
 
-        propeller, climbing = load_propeller(case), tunnel.dynamic[tunnel.dynamic.J <= 0.5]
-        still, moving = (twist_needed(propeller, of) for of in (tunnel.static, climbing))
+        propeller, climbing = pm.load_propeller(case), tunnel.dynamic[tunnel.dynamic.J <= 0.5]
+        still, moving = (twist_needed(propeller, points) for points in (tunnel.static, climbing))
         print(
             f"Twist offset for the measured static CT: {fits_over_rpm(tunnel.static.rpm, still[0])}"
         )
@@ -144,13 +146,13 @@ def main() -> None:
             tunnel.static, climbing, dict(zip(labels, zip(still, moving, strict=True), strict=True))
         )
         figure.savefig(output / f"{case}_twist_needed.png")
-        points = zip(
+        rows_needed = zip(
             *(np.append(getattr(tunnel.static, name), getattr(climbing, name)) for name in
               ("rpm", "J")), *np.concatenate([still, moving], axis=1), strict=True
         )  # fmt: skip
         write_csv(
             output / f"{case}_twist_needed.csv",
-            [dict(zip(("rpm", "J", "twist", "CP error"), point, strict=True)) for point in points],
+            [dict(zip(("rpm", "J", "twist", "CP error"), row, strict=True)) for row in rows_needed],
         )
     print(f"\nAll rows and the figures: {output}")
 

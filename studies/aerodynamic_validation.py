@@ -18,6 +18,7 @@ import numpy as np
 from rich.console import Console
 from rich.table import Table
 
+import propmdao as pm
 from propmdao.analysis.wind_tunnel import (
     Errors,
     Points,
@@ -28,7 +29,6 @@ from propmdao.analysis.wind_tunnel import (
     read_wind_tunnel,
 )
 from propmdao.figures import comparisons
-from propmdao.formats.propellers import load_propeller
 
 MEASUREMENTS = Path(__file__).parent / "measurements"
 # Propellers of the catalogue, and the files of their measurements.
@@ -84,7 +84,7 @@ def measurements(case: str, quick: bool = False) -> WindTunnel:
 
 def compare(case: str, tunnel: WindTunnel) -> list[Column]:
     """Compute the published and the calibrated geometry at the points of the wind tunnel."""
-    propeller = load_propeller(case)
+    propeller = pm.load_propeller(case)
     columns = []
     for name in (PUBLISHED, CALIBRATED):
         twist = calibrated_twist_deg(propeller, tunnel.static) if name == CALIBRATED else 0.0

@@ -15,34 +15,39 @@ from pathlib import Path
 
 import numpy as np
 
+import propmdao as pm
 from propmdao.acoustics.kinematics.motion import poses
-from propmdao.acoustics.kinematics.observers import arc, directions, sphere
+from propmdao.acoustics.kinematics.observers import directions, sphere
 from propmdao.acoustics.kinematics.tracks import flyover_track
-from propmdao.analysis.flyover_results import PARTS, STEP, Flight
-from propmdao.analysis.flyovers import fly_over
-from propmdao.analysis.single_point import SOUND_SPEED, Analysis, analyze
+from propmdao.analysis.flyover_results import STEP
 from propmdao.figures.directivity import hemisphere_map
 from propmdao.figures.histories import level_history
 from propmdao.figures.of_analysis import analysis_sound
 from propmdao.figures.sound import source_levels
-from propmdao.formats.propellers import load_propeller
+from propmdao.records.models import Trip
 
-PROPELLER = load_propeller("apcsf_11x4.7")
+PROPELLER = pm.load_propeller("apcsf_11x4.7")
 THRUST, SPEED, DENSITY = 1.2, 8.0, 1.225  # N, m/s, kg/m3
-FLIGHT = Flight(height=20.0, duration=30.0)  # m, s
+FLIGHT = pm.Flight(height=20.0, duration=30.0)  # m, s
 TRACK = flyover_track(FLIGHT.height, SPEED)
 ARC = np.linspace(-90.0, 90.0, 37)  # deg
 TRIPPED = "total, tripped"
 
 
-def hemisphere(analysis: Analysis) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def analyze(trip: Trip) -> pm.Analysis:
+    """Analyse the propeller in cruise, on an arc; the trip changes the broadband noise only."""
+    return pm.analyze(PROPELLER, thrust=THRUST, speed=SPEED, density=DENSITY, broadband=True,
+                      trip=trip, observers=pm.arc(FLIGHT.height, ARC))  # fmt: skip
+
+
+def hemisphere(analysis: pm.Analysis) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Elevations, azimuths from the nose [deg] and levels below the aircraft, flying along [dB]."""
     elevation, azimuth = np.linspace(-90.0, 0.0, 31), np.linspace(0.0, 360.0, 73)
     axes = np.asarray(poses(TRACK, np.zeros(1)).rotation)[0]
-    seen = directions(sphere(FLIGHT.height, elevation, azimuth) @ axes)
-    # In axial flight it is the same all around the rotor's axis.
-    total = source_levels(analysis_sound(found))["total"]
-    level = np.interp(seen.elevation_deg, ARC, total)
+    direction = directions(sphere(FLIGHT.height, elevation, azimuth) @ axes)
+    # In axial flight the sound is the same all around the rotor's axis.
+    total = source_levels(analysis_sound(analysis))["total"]
+    level = np.interp(direction.elevation_deg, ARC, total)
     return elevation, azimuth, level.reshape(elevation.size, azimuth.size)
 
 
@@ -54,11 +59,11 @@ def main() -> None:
     output = parser.parse_args().output.absolute()
     output.mkdir(parents=True, exist_ok=True)
 
-    found = analyze(PROPELLER, thrust=THRUST, speed=SPEED, density=DENSITY, broadband=True,
-                    observers=arc(FLIGHT.height, ARC))  # fmt: skip
-    heard = fly_over(PROPELLER, found, FLIGHT)
-    tripped = fly_over(PROPELLER, found, FLIGHT, trip="heavy")
-    levels = {part: heard.level_dba(part) for part in PARTS} | {TRIPPED: tripped.level_dba()}
+    analysis = analyze("none")
+    untripped = pm.fly_over(analysis, FLIGHT)
+    tripped = pm.fly_over(analyze("heavy"), FLIGHT)
+    levels = {part: untripped.level_dba(part) for part in untripped.mean_square}
+    levels[TRIPPED] = tripped.level_dba()
     with (output / "levels_dba.csv").open("w", newline="", encoding="utf-8") as stream:
         writer = csv.writer(stream)
         writer.writerow(["time_s", *levels])
@@ -72,11 +77,11 @@ def main() -> None:
         print(f"{name}: LAmax {level['lamax_dba']:.1f} dBA, SEL {level['sel_dba']:.1f} dBA, "
               f"EPNL {summary['epnl']:.1f} EPNdB")  # fmt: skip
     level_history(
-        heard.time, levels, f"A-weighted level of {STEP:g} s, dB re 20 µPa",
-        {"heard from overhead": FLIGHT.miss_distance / SOUND_SPEED},
+        untripped.time, levels, f"A-weighted level of {STEP:g} s, dB re 20 µPa",
+        {"heard from overhead": FLIGHT.miss_distance / float(analysis.state.air.sound_speed)},
     ).savefig(output / "levels.png")  # fmt: skip
     hemisphere_map(
-        *hemisphere(found), f"OASPL at {FLIGHT.height:g} m, dB re 20 µPa; azimuth from the nose"
+        *hemisphere(analysis), f"OASPL at {FLIGHT.height:g} m, dB re 20 µPa; azimuth from the nose"
     ).savefig(output / "hemisphere.png")
     print(f"Levels and figures: {output}")
 

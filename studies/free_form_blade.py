@@ -27,11 +27,9 @@ import numpy as np
 import openmdao.api as om
 from low_noise_design import BASELINE
 
-from propmdao.acoustics.kinematics.observers import arc
+import propmdao as pm
 from propmdao.components import NoiseObjectiveComp, PropellerGroup
 from propmdao.formats.naca_blade import with_naca_sections
-from propmdao.propeller.description import Propeller
-from propmdao.records.fidelity import Fidelity
 
 AT = np.array([0.15, 0.3, 0.5, 0.7, 0.85, 1.0])  # r/R of the control points
 MICROPHONES = [-75.0, -60.0, -45.0, -30.0, -15.0]  # deg, at the distance of the thesis' one
@@ -71,7 +69,7 @@ def free_indices(name: str) -> np.ndarray:
 
 
 def build_problem(
-    objective: str, torque_limit: float, noise_limit: float, fidelity: Fidelity | None = None
+    objective: str, torque_limit: float, noise_limit: float, fidelity: pm.Fidelity | None = None
 ) -> om.Problem:
     """Blade to soft maxima, with design variables, constraints and one of `OBJECTIVES`.
 
@@ -93,7 +91,7 @@ def build_problem(
     model = prob.model
     blade = PropellerGroup(
         propeller=thesis.START,
-        observers=arc(thesis.DISTANCE, MICROPHONES),
+        observers=pm.arc(thesis.DISTANCE, MICROPHONES),
         fidelity=fidelity or thesis.FIDELITY,
         broadband=True,
         design_distributions=dict.fromkeys(BOUNDS, AT),
@@ -172,7 +170,7 @@ def _add_slopes(model: om.Group) -> None:
             )  # fmt: skip
 
 
-def write_blade(prob: om.Problem, name: str, folder: Path) -> Propeller:
+def write_blade(prob: om.Problem, name: str, folder: Path) -> pm.Propeller:
     """Make the blade of a design and write it as a file for `propmdao analyze`."""
     values = {n: prob.get_val(n, units=units(n)).ravel() for n in BOUNDS}
     return with_naca_sections(

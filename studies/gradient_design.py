@@ -24,13 +24,11 @@ import low_noise_design as thesis
 import numpy as np
 import openmdao.api as om
 
-from propmdao.acoustics.kinematics.observers import arc
+import propmdao as pm
 from propmdao.acoustics.levels.decibels import level_db, oaspl_db
 from propmdao.acoustics.levels.weighting import level_dba
-from propmdao.aerodynamics.sections.laws import AIR_VISCOSITY
 from propmdao.analysis.comparisons import Cell, Row, Rows, markdown, print_comparison, side_by_side
 from propmdao.analysis.self_noise import BANDS_HZ
-from propmdao.analysis.single_point import Analysis, analyze
 from propmdao.components.drivers.gradient_search import Search, run_slsqp
 from propmdao.components.drivers.search_history import read_history
 from propmdao.components.noise_objective_comp import soft_maximum_db
@@ -38,10 +36,8 @@ from propmdao.figures import searches
 from propmdao.figures.blades import blade_comparison
 from propmdao.figures.directivity import directivity
 from propmdao.figures.spectra import third_octaves
-from propmdao.propeller.description import Propeller
-from propmdao.records.fidelity import Fidelity
 
-COARSE = Fidelity(n_chordwise=4, n_spanwise=12, n_contour=21, n_surface_span=20, n_harmonics=4)
+COARSE = pm.Fidelity(n_chordwise=4, n_spanwise=12, n_contour=21, n_surface_span=20, n_harmonics=4)
 TOLERANCE = 1e-4  # of a constraint in driver scaling
 ROWS: tuple[Row, ...] = (
     ("rotation speed, rpm", "rpm", ".0f"),
@@ -69,40 +65,41 @@ BY_STEP = ("rpm", "torque", "tones", "thickness", "loading", "total", "tripped")
 Design = dict[str, np.ndarray]  # control points by distribution
 
 
-def evaluate(propeller: Propeller) -> Analysis:
+def evaluate(propeller: pm.Propeller) -> pm.Analysis:
     """Analyse a propeller at the thrust, in the row of microphones and over the arc."""
     elevations = [*free_form.MICROPHONES, *thesis.DIRECTIVITY]
-    return analyze(
+    return pm.analyze(
         propeller, thrust=thesis.THRUST, speed=thesis.SPEED, density=thesis.DENSITY,
-        observers=arc(thesis.DISTANCE, elevations), broadband=True,
+        observers=pm.arc(thesis.DISTANCE, elevations), broadband=True,
         fidelity=thesis.FIDELITY,
     )  # fmt: skip
 
 
-def column(propeller: Propeller, of: Analysis) -> dict[str, Cell]:
-    """What the table shows of a blade."""
-    heard, n = of.to_dict()["observers"], len(free_form.MICROPHONES)
-    at, p = n + thesis.MICROPHONE_INDEX, free_form.EXPONENT
-    strips, pressure, noise = of.loads.strips, of.tones, of.broadband
+def column(propeller: pm.Propeller, analysis: pm.Analysis) -> dict[str, Cell]:
+    """Compute what the table shows of a blade."""
+    observers, n = analysis.to_dict()["observers"], len(free_form.MICROPHONES)
+    microphone, p = n + thesis.MICROPHONE_INDEX, free_form.EXPONENT
+    loads, air, noise = analysis.loads, analysis.state.air, analysis.broadband
+    total, parts = analysis.tones.total, analysis.tones.parts
     assert noise is not None
     # As if the boundary layers were tripped; the tones are far below.
     turbulent = level_dba(BANDS_HZ, noise.total[:n] - noise.laminar_shedding[:n])
-    r, thrust = np.asarray(strips.r_over_R), np.asarray(of.loads.strip_thrust)
-    reynolds = of.density * of.loads.sections.relative_speed * strips.chord / AIR_VISCOSITY
+    r, thrust = np.asarray(loads.strips.r_over_R), np.asarray(loads.strip_thrust)
+    reynolds = loads.sections.relative_speed * loads.strips.chord / air.kinematic_viscosity
     radius = 0.5 * propeller.diameter
     return {
-        "rpm": of.rpm,
-        "thrust": float(of.loads.thrust),
-        "torque": 1e3 * float(of.loads.torque),
-        "tones": soft_maximum_db(oaspl_db(pressure.total[:n]), p),
-        "thickness": soft_maximum_db(oaspl_db(pressure.thickness[:n]), p),
-        "loading": soft_maximum_db(oaspl_db(pressure.loading[:n]), p),
-        "total": soft_maximum_db([one["oaspl_dba"] for one in heard[:n]], p),
+        "rpm": analysis.rpm,
+        "thrust": float(loads.thrust),
+        "torque": 1e3 * float(loads.torque),
+        "tones": soft_maximum_db(oaspl_db(total[:n]), p),
+        "thickness": soft_maximum_db(oaspl_db(parts["thickness"][:n]), p),
+        "loading": soft_maximum_db(oaspl_db(parts["loading"][:n]), p),
+        "total": soft_maximum_db([levels["oaspl_total_dba"] for levels in observers[:n]], p),
         "tripped": soft_maximum_db(turbulent, p),
-        "tones_at": float(oaspl_db(pressure.total[at])),
-        "thickness_at": float(oaspl_db(pressure.thickness[at])),
-        "loading_at": float(oaspl_db(pressure.loading[at])),
-        "broadband_at": float(level_db(noise.total[at].sum())),
+        "tones_at": float(oaspl_db(total[microphone])),
+        "thickness_at": float(oaspl_db(parts["thickness"][microphone])),
+        "loading_at": float(oaspl_db(parts["loading"][microphone])),
+        "broadband_at": float(level_db(noise.total[microphone].sum())),
         "thrust_radius": float(r @ thrust / thrust.sum()),
         "area": 1e4 * radius**2 * float(np.trapezoid(propeller.c_over_R, propeller.r_over_R)),
         "reynolds": float(np.min(np.asarray(reynolds)[r > 0.4])),
@@ -110,7 +107,7 @@ def column(propeller: Propeller, of: Analysis) -> dict[str, Cell]:
 
 
 def contributions(prob: om.Problem, start: Design, best: Design) -> Rows:
-    """What each kind of variable brings when one after the other takes its optimum's values."""
+    """Tabulate the effect of each kind of variable, set to its optimum's values in turn."""
     for name, value in start.items():
         prob.set_val(f"{name}_cp", value, units=free_form.units(name))
     steps = {}
@@ -127,28 +124,31 @@ def contributions(prob: om.Problem, start: Design, best: Design) -> Rows:
 
 
 def cost(searches: dict[str, Search]) -> Rows:
-    """How each design was found, its head first."""
+    """Tabulate how each design was found, the head first."""
     rows: Rows = [("search", "designs", "objective at start", "at the end", "largest violation",
                    "time, s", "compiling, s")]  # fmt: skip
-    for name, (of, seconds, compiling) in searches.items():
+    for name, (history, seconds, compiling) in searches.items():
+        objective, violation = history.objective, history.violation
         rows.append(
-            (name, f"{of.objective.size}", f"{of.objective[0]:.3f}", f"{of.objective[-1]:.3f}",
-             f"{of.violation[-1]:.1e}", f"{seconds:.0f}", f"{compiling:.0f}")
+            (name, f"{objective.size}", f"{objective[0]:.3f}", f"{objective[-1]:.3f}",
+             f"{violation[-1]:.1e}", f"{seconds:.0f}", f"{compiling:.0f}")
         )  # fmt: skip
     return rows
 
 
 class Results(NamedTuple):
-    """Blades by name with their analyses and how they were found."""
+    """Blades by name with their analyses, and the searches by which they were found."""
 
-    blades: dict[str, Propeller]
-    analyses: dict[str, Analysis]
+    blades: dict[str, pm.Propeller]
+    analyses: dict[str, pm.Analysis]
     searches: dict[str, Search]
     contributions: dict[str, Rows]
 
     def columns(self) -> dict[str, dict[str, Cell]]:
-        """What the table shows, by blade."""
-        return {name: column(self.blades[name], of) for name, of in self.analyses.items()}
+        """Columns of the table, by blade."""
+        return {
+            name: column(self.blades[name], analysis) for name, analysis in self.analyses.items()
+        }
 
 
 def control_points(prob: om.Problem) -> Design:
@@ -205,15 +205,16 @@ def design(output: Path, evolution: int = 0) -> Results:
 def draw(results: Results, output: Path) -> None:
     """Write the figures."""
     n = len(free_form.MICROPHONES)
-    runs = {name: (of.history.objective, of.history.violation)
-            for name, of in results.searches.items() if name != "evolution"}  # fmt: skip
+    runs = {name: (search.history.objective, search.history.violation)
+            for name, search in results.searches.items() if name != "evolution"}  # fmt: skip
     elevations = np.array(thesis.DIRECTIVITY)
     tones, total, bands = {}, {}, {}
-    for name, of in results.analyses.items():
-        heard = of.to_dict()["observers"]
-        tones[name] = oaspl_db(of.tones.total[n:])
-        total[name] = [one["oaspl_dba"] for one in heard[n:]]
-        bands[name] = [one["spl_db"] for one in heard[n + thesis.MICROPHONE_INDEX]["broadband"]]
+    for name, analysis in results.analyses.items():
+        observers = analysis.to_dict()["observers"][n:]
+        tones[name] = oaspl_db(analysis.tones.total[n:])
+        total[name] = [levels["oaspl_total_dba"] for levels in observers]
+        broadband = observers[thesis.MICROPHONE_INDEX]["broadband"]
+        bands[name] = [band["spl_db"] for band in broadband]
     spectrum = third_octaves(BANDS_HZ, bands)
     spectrum.axes[0].set_xlim(left=500.0)  # nothing is drawn below
     for name, figure in (

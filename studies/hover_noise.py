@@ -18,20 +18,16 @@ import numpy as np
 from rich.console import Console
 from rich.table import Table
 
-from propmdao.acoustics.kinematics.observers import point
+import propmdao as pm
 from propmdao.acoustics.levels.decibels import spl_db
 from propmdao.acoustics.sources.formulation1a import tones
-from propmdao.analysis.single_point import SOUND_SPEED, Analysis, analyze
 from propmdao.analysis.wind_tunnel import calibrated_twist_deg, read_wind_tunnel
 from propmdao.figures import comparisons
-from propmdao.formats.propellers import load_propeller
-from propmdao.geometry.blade import Blade
-from propmdao.geometry.meshes import blade_meshes, mesh_radii
+from propmdao.geometry.meshes import propeller_surface
 from propmdao.geometry.surface import surface_panels
-from propmdao.records.fidelity import Fidelity
 from propmdao.records.loads import PointLoads
 
-PROPELLER = load_propeller("apcsf_11x4.7")
+PROPELLER = pm.load_propeller("apcsf_11x4.7")
 MEASURED = Path(__file__).parent / "measurements" / "hover_noise_apcsf_11x4.7.toml"
 WIND_TUNNEL = MEASURED.with_name("uiuc_apcsf_11x4.7.toml")
 DENSITY = 1.18  # kg/m3: the test states none, with this its thrusts are those of the wind tunnel
@@ -74,17 +70,20 @@ def hover_tones() -> HoverTones:
     test: dict[str, Any] = tomllib.loads(MEASURED.read_text(encoding="utf-8"))
     rpm, elevation = (np.array(test["blade_passage"][key]) for key in ("rpm", "elevation_deg"))
     measured = measured_loads(rpm, test["thrust"])
-    points = [(test["radius"], angle) for angle in (*elevation, *ARC)]
-    published = [analyze(PROPELLER, rpm=speed, density=DENSITY, observers=points) for speed in rpm]
+    everywhere = pm.arc(test["radius"], [*elevation, *ARC])
+    published = [
+        pm.analyze(PROPELLER, rpm=value, density=DENSITY, observers=everywhere) for value in rpm
+    ]
     twist = calibrated_twist_deg(PROPELLER, read_wind_tunnel(WIND_TUNNEL).static)
     turned = [
-        analyze(PROPELLER, rpm=speed, density=DENSITY, observers=points[: elevation.size],
-                twist_offset_deg=twist)
-        for speed in rpm
+        pm.analyze(PROPELLER, rpm=value, density=DENSITY, twist_offset_deg=twist,
+                   observers=pm.arc(test["radius"], elevation))
+        for value in rpm
     ]  # fmt: skip
-    loads = np.array([(of.loads.thrust, of.loads.torque) for of in found])
-    level = np.array([spl_db(of.tones.total[:, 0]) for of in found])
-    scaled = [scaled_tone(of, *ratio) for of, ratio in zip(found, known / loads, strict=True)]
+    loads = np.array([(a.loads.thrust, a.loads.torque) for a in published])
+    level = np.array([spl_db(a.tones.total[:, 0]) for a in published])
+    ratios = measured / loads
+    scaled = [scaled_tone(a, *ratio) for a, ratio in zip(published, ratios, strict=True)]
     return HoverTones(
         rpm=rpm,
         elevation_deg=elevation,
@@ -107,16 +106,15 @@ def measured_loads(rpm: np.ndarray, test: dict[str, list[float]]) -> np.ndarray:
     return np.stack([np.interp(rpm, test["rpm"], test["thrust"]), torque], axis=1)
 
 
-def scaled_tone(analysis: Analysis, thrust: float, torque: float) -> np.ndarray:
+def scaled_tone(analysis: pm.Analysis, thrust: float, torque: float) -> np.ndarray:
     """Level of the first tone with the loads along and about the axis multiplied."""
-    r, n = PROPELLER.r_over_R, Fidelity()
-    radii = mesh_radii(r, n.n_spanwise, n.n_surface_span)
-    _, surface = blade_meshes(Blade.from_propeller(PROPELLER), radii, n.n_chordwise, n.n_contour)
-    force = found.loads.point_loads.force * np.array([torque, torque, thrust])
-    loads = PointLoads(found.loads.point_loads.position, force)
-    heard = tones(
-        surface_panels(surface), loads, PROPELLER.n_blades, found.rpm * np.pi / 30.0, 0.0, DENSITY,
-        SOUND_SPEED, point(*found.observers.T), 1,
+    fidelity = analysis.model.fidelity
+    surface = propeller_surface(PROPELLER, fidelity.n_contour, fidelity.n_surface_span)
+    force = analysis.loads.point_loads.force * np.array([torque, torque, thrust])
+    loads = PointLoads(analysis.loads.point_loads.position, force)
+    scaled = tones(
+        surface_panels(surface), loads, PROPELLER.n_blades, analysis.state,
+        analysis.listening.observers, 1,
     )  # fmt: skip
     return np.asarray(spl_db(scaled.total[:, 0]))
 

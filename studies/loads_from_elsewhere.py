@@ -17,8 +17,8 @@ from rich import box
 from rich.console import Console
 from rich.table import Table
 
+import propmdao as pm
 from propmdao.acoustics.kinematics.motion import translation
-from propmdao.acoustics.kinematics.observers import arc
 from propmdao.acoustics.kinematics.reception import Observers
 from propmdao.acoustics.levels.decibels import oaspl_db, spl_db
 from propmdao.acoustics.levels.weighting import oaspl_dba
@@ -26,7 +26,6 @@ from propmdao.acoustics.sources.moving_sources import compact_sections
 from propmdao.acoustics.sources.periodic import rotor_tones
 from propmdao.acoustics.sources.rotors import Rotor
 from propmdao.formats.wopwop.write_case import write_rotor_case
-from propmdao.records.air import Air
 from propmdao.records.loads import PointLoads
 from propmdao.records.units import RAD_PER_S
 
@@ -68,10 +67,10 @@ def make_rotor(blade: dict[str, np.ndarray], azimuths_deg: list[float], rpm: flo
 
 
 def print_levels(
-    rotor: Rotor, speed: float, air: Air, distance: float, elevations_deg: list[float]
+    rotor: Rotor, speed: float, air: pm.Air, distance: float, elevations_deg: list[float]
 ) -> None:
     """Levels at microphones that fly along, on an arc around the rotor."""
-    places = arc(distance, elevations_deg)
+    places = pm.arc(distance, elevations_deg)
     tones = rotor_tones(rotor, (0, 0, speed), air, places, N_TONES)
     weighted = oaspl_dba(tones.frequency_hz, tones.total)
     table = Table(box=box.SIMPLE, pad_edge=False, collapse_padding=True)
@@ -123,12 +122,12 @@ def main() -> None:
     print(
         f"{n_blades} blades at {options.rpm:g} rpm: thrust {thrust:.4g} N, torque {torque:.4g} N m"
     )
-    air = Air(density=options.rho, sound_speed=options.sound_speed)
+    air = pm.Air(density=options.rho, sound_speed=options.sound_speed)
     try:
         print_levels(rotor, options.speed, air, options.distance, options.elevations)
         if options.wopwop is not None:
             velocity = np.array([0.0, 0.0, options.speed])
-            places = arc(options.distance, options.elevations)
+            places = pm.arc(options.distance, options.elevations)
             observers = Observers(jnp.asarray(places), jnp.asarray(velocity))
             times = np.arange(1024) * 60 / options.rpm / 1024
             flight = (translation(velocity=velocity),)

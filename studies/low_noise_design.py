@@ -19,9 +19,8 @@ from pathlib import Path
 import numpy as np
 import openmdao.api as om
 
-from propmdao.acoustics.kinematics.observers import arc
+import propmdao as pm
 from propmdao.analysis.comparisons import ROWS, Cell, at_observer, print_comparison
-from propmdao.analysis.single_point import Analysis, analyze
 from propmdao.components import DifferentialEvolutionDriver, PropellerGroup
 from propmdao.components.geometry_comp import blade_distributions
 from propmdao.figures.blades import blade_comparison
@@ -31,12 +30,9 @@ from propmdao.figures.pressure import blade_passage, pressure
 from propmdao.figures.sound import Sound, source_levels
 from propmdao.figures.spectra import harmonic_spectrum
 from propmdao.formats.naca_blade import with_naca_sections
-from propmdao.formats.propellers import load_propeller
 from propmdao.propeller.airfoils.airfoil import max_camber_for_design_lift
-from propmdao.propeller.description import Propeller
-from propmdao.records.fidelity import Fidelity
 
-BASELINE = load_propeller("apcsf_11x4.7_thesis")
+BASELINE = pm.load_propeller("apcsf_11x4.7_thesis")
 START = dataclasses.replace(BASELINE, airfoils=[(1.0, "naca4409")])
 SPEED, DENSITY, THRUST = 8.0, 1.225, 1.20  # m/s, kg/m3, N
 RPM_BOUNDS = (3500.0, 5500.0)
@@ -49,7 +45,7 @@ BOUNDS = {
     T_C: {"lower": [0.05, 0.03, 0.03], "upper": [0.13, 0.10, 0.10]},
     CL_I: {"lower": [0.50, 0.30, 0.30], "upper": [0.80, 0.95, 0.80]},
 }
-FIDELITY = Fidelity()  # panels and harmonics
+FIDELITY = pm.Fidelity()  # panels and harmonics
 POPULATION = 24  # designs in a generation
 
 # Values that the thesis reports, tables 4.9 and 4.10.
@@ -77,7 +73,7 @@ def build_problem(torque_limit: float) -> om.Problem:
     """Blade to noise, with design variables, constraint and objective."""
     propeller = PropellerGroup(
         propeller=START,
-        observers=arc(DISTANCE, MICROPHONE),
+        observers=pm.arc(DISTANCE, MICROPHONE),
         fidelity=FIDELITY,
         rpm_bounds=RPM_BOUNDS,
         camber=CL_I,
@@ -119,15 +115,14 @@ def optimise(prob: om.Problem, evaluations: int, seed: int, output: Path) -> Non
 
 
 def evaluate(
-    propeller: Propeller, thrust: float | None = None, rpm: float | None = None
-) -> Analysis:
+    propeller: pm.Propeller, thrust: float | None = None, rpm: float | None = None
+) -> pm.Analysis:
     """Analyse a propeller at a thrust or an rpm, on the arc of the microphone."""
-    observers = [(DISTANCE, elevation) for elevation in DIRECTIVITY]
-    return analyze(propeller, thrust=thrust, rpm=rpm, speed=SPEED, density=DENSITY,
-                   observers=observers, fidelity=FIDELITY)  # fmt: skip
+    return pm.analyze(propeller, thrust=thrust, rpm=rpm, speed=SPEED, density=DENSITY,
+                      observers=pm.arc(DISTANCE, DIRECTIVITY), fidelity=FIDELITY)  # fmt: skip
 
 
-def naca_blade(name: str, design: dict[str, list[float]], folder: Path) -> Propeller:
+def naca_blade(name: str, design: dict[str, list[float]], folder: Path) -> pm.Propeller:
     """Make the blade of a design and write it as a file that `propmdao analyze` reads."""
     return with_naca_sections(
         BASELINE, name, [*AT.values()],
@@ -136,7 +131,7 @@ def naca_blade(name: str, design: dict[str, list[float]], folder: Path) -> Prope
     )  # fmt: skip
 
 
-def column(propeller: Propeller, analysis: Analysis) -> dict[str, Cell]:
+def column(propeller: pm.Propeller, analysis: pm.Analysis) -> dict[str, Cell]:
     """Results at the microphone, and the design variables as this blade has them."""
     values: dict[str, Cell] = {**at_observer(analysis, MICROPHONE_INDEX)}
     blade, airfoils = blade_distributions(propeller, CL_I), dict(propeller.airfoils)

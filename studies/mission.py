@@ -12,9 +12,8 @@ import dymos as dm
 import numpy as np
 import openmdao.api as om
 
+import propmdao as pm
 from propmdao.components import PropellerGroup
-from propmdao.formats.propellers import load_propeller
-from propmdao.records.fidelity import Fidelity
 
 MASS, WING_AREA, GRAVITY = 1.0, 0.25, 9.80665  # kg, m2, m/s2
 DRAG_AT_ZERO_LIFT, INDUCED_DRAG = 0.035, 0.05  # CD = CD0 + k CL^2
@@ -22,8 +21,8 @@ KV, RESISTANCE, IDLE_CURRENT = 1000.0, 0.08, 0.8  # of motor and battery: rpm/V,
 KT = 30.0 / (np.pi * KV)  # N m/A
 LARGEST_CURRENT, AVIONICS = 12.0, 4.0  # A; W
 HEIGHT = 60.0  # m, to climb
-PROPELLER, RADII = load_propeller("apcsf_11x4.7"), [0.15, 0.5, 1.0]  # of the twist's points
-FIDELITY = Fidelity(n_chordwise=4, n_spanwise=12)
+PROPELLER, RADII = pm.load_propeller("apcsf_11x4.7"), [0.15, 0.5, 1.0]  # of the twist's points
+FIDELITY = pm.Fidelity(n_chordwise=4, n_spanwise=12)
 
 
 class Flight(om.Group):
@@ -32,7 +31,7 @@ class Flight(om.Group):
     def initialize(self) -> None:
         """Declare what Dymos and the study choose."""
         self.options.declare("num_nodes", types=int)
-        self.options.declare("fidelity", FIDELITY, types=Fidelity)
+        self.options.declare("fidelity", FIDELITY, types=pm.Fidelity)
 
     def setup(self) -> None:
         """Connect propeller and flight mechanics."""
@@ -77,7 +76,7 @@ def mission(
     height: float = HEIGHT,
     segments: int = 4,
     twist: bool = False,
-    fidelity: Fidelity = FIDELITY,
+    fidelity: pm.Fidelity = FIDELITY,
 ) -> om.Problem:
     """Set up the climb at the least energy, with a first guess.
 

@@ -10,22 +10,19 @@ import argparse
 import numpy as np
 import openmdao.api as om
 
-from propmdao.acoustics.kinematics.observers import arc
+import propmdao as pm
 from propmdao.components import PropellerGroup
-from propmdao.formats.propellers import load_propeller
-from propmdao.propeller.description import Propeller
-from propmdao.records.fidelity import Fidelity
 
 SPEED = np.array([0.0, 8.0])  # m/s: hover, cruise
 THRUST = np.array([2.5, 1.2])  # N
 SHARE = np.array([0.3, 0.7])  # shares of the time
-OBSERVERS = arc(1.905, [-45.0, -15.0])
-FIDELITY = Fidelity(n_chordwise=4, n_spanwise=12, n_contour=33, n_surface_span=24, n_harmonics=4)
+OBSERVERS = pm.arc(1.905, [-45.0, -15.0])
+FIDELITY = pm.Fidelity(n_chordwise=4, n_spanwise=12, n_contour=33, n_surface_span=24, n_harmonics=4)
 RADII = [0.15, 0.5, 1.0]
 
 
 def multi_point(
-    propeller: Propeller, fidelity: Fidelity = FIDELITY, max_iterations: int = 20
+    propeller: pm.Propeller, fidelity: pm.Fidelity = FIDELITY, max_iterations: int = 20
 ) -> om.Problem:
     """Set up the design problem and run it at the propeller's own blade, whose torque is the limit.
 
@@ -92,7 +89,7 @@ def main() -> None:
     """Optimise and print both blades."""
     parser = argparse.ArgumentParser(description=__doc__.split("\n\n")[0])
     parser.add_argument("propeller", nargs="?", default="apcsf_11x4.7", help="%(default)s")
-    prob = multi_point(load_propeller(parser.parse_args().propeller))
+    prob = multi_point(pm.load_propeller(parser.parse_args().propeller))
     show(prob, "start")
     result = prob.run_driver()
     show(prob, f"after {prob.driver.result.model_evals} evaluations, {result.exit_status}")

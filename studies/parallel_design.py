@@ -24,25 +24,23 @@ from pathlib import Path
 
 import openmdao.api as om
 
-from propmdao.acoustics.kinematics.observers import arc
+import propmdao as pm
 from propmdao.components import DifferentialEvolutionDriver, PropellerGroup
-from propmdao.formats.propellers import load_propeller
-from propmdao.records.fidelity import Fidelity
 from propmdao.runtime.worker_processes import start_workers, use_one_thread
 
-PROPELLER = load_propeller("apcsf_11x4.7")
+PROPELLER = pm.load_propeller("apcsf_11x4.7")
 STATIONS = [0.15, 0.4, 0.7, 1.0]  # r/R of the control points
-COARSE = Fidelity(n_chordwise=4, n_spanwise=12, n_contour=21, n_surface_span=20, n_harmonics=4)
+COARSE = pm.Fidelity(n_chordwise=4, n_spanwise=12, n_contour=21, n_surface_span=20, n_harmonics=4)
 
 
-def build_problem(fidelity: Fidelity, noise_limit: float = 200.0) -> om.Problem:
+def build_problem(fidelity: pm.Fidelity, noise_limit: float = 200.0) -> om.Problem:
     """Blade to torque and noise. Without recorders: every worker would write them."""
     prob = om.Problem(reports=False)
     prob.model.add_subsystem(
         "propeller",
         PropellerGroup(
             propeller=PROPELLER,
-            observers=arc(1.905, -45.0),
+            observers=pm.arc(1.905, -45.0),
             fidelity=fidelity,
             rpm_bounds=(3000.0, 7000.0),
             design_distributions={"beta": STATIONS, "chord_over_R": STATIONS},
@@ -94,7 +92,7 @@ def main() -> None:
     parser.add_argument("--checkpoint", type=Path, help="file to go on from")
     options = parser.parse_args()
 
-    fidelity = Fidelity() if options.fine else COARSE
+    fidelity = pm.Fidelity() if options.fine else COARSE
     baseline = build_problem(fidelity)
     baseline.run_model()
     factory = partial(build_problem, fidelity, float(baseline.get_val("oaspl_db")[0]))

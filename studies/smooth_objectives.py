@@ -25,12 +25,12 @@ import openmdao.api as om
 from numpy.typing import NDArray
 from scipy.ndimage import median_filter
 
+import propmdao as pm
 from propmdao.analysis.comparisons import Rows, markdown
 from propmdao.figures import searches
-from propmdao.records.fidelity import Fidelity
 
 Array = NDArray[np.float64]
-QUICK = Fidelity(n_chordwise=4, n_spanwise=12, n_contour=21, n_surface_span=20, n_harmonics=4)
+QUICK = pm.Fidelity(n_chordwise=4, n_spanwise=12, n_contour=21, n_surface_span=20, n_harmonics=4)
 MICROPHONE = free_form.MICROPHONES.index(thesis.MICROPHONE)
 RESPONSES = {  # output: element, label
     "spl_bpf_db": (MICROPHONE, "BPF tone, dB"),

@@ -1,4 +1,4 @@
-"""Whether the prescribed wake moves as it itself and the blades say.
+"""The prescribed wake beside one that moves as it itself and the blades induce.
 
 The sheets that the blades leave are let drift: their inner part as one, their outer part, which
 becomes the tip vortex, as another, each with the mean of the velocity that all sheets and blades
@@ -19,6 +19,7 @@ import jax.numpy as jnp
 import numpy as np
 from aerodynamic_validation import show, write_csv
 
+import propmdao as pm
 from propmdao.aerodynamics.coefficients import coefficients
 from propmdao.aerodynamics.lattice.rings import BOUND_CORE, blade_influence, wake_influence
 from propmdao.aerodynamics.rotor_geometry import RotorGeometry
@@ -32,17 +33,14 @@ from propmdao.aerodynamics.solutions.lattice_loads import (
 from propmdao.aerodynamics.vortices.cores import core_radius
 from propmdao.aerodynamics.wakes import helical, momentum
 from propmdao.aerodynamics.wakes.helical import wake_transport
-from propmdao.formats.propellers import load_propeller
 from propmdao.geometry.blade import Blade
 from propmdao.geometry.lattice import lattice_interpolation, lattice_nodes
-from propmdao.propeller.description import Propeller
-from propmdao.records.air import Air
 from propmdao.records.states import RotorState
 from propmdao.records.units import RAD_PER_S
 
 CASES = [(name, 2, J) for name in ("apcsf_11x4.7", "apce_10x7") for J in (0.0, 0.2, 0.4)]
 CASES += [("apcsf_11x4.7", n_blades, J) for n_blades in (3, 4) for J in (0.0, 0.2)]
-RPM, AIR = 4200.0, Air()
+RPM, AIR = 4200.0, pm.Air()
 TRANSPORT = wake_transport()
 AGES = np.asarray(TRANSPORT.ages)
 CORE = 0.03  # of the sheets where they act on themselves, in radii: 0.01 to 0.06 change CT by 0.1 %
@@ -57,7 +55,7 @@ _loads = jax.jit(loads_with_wake)
 _by_wake = jax.jit(wake_influence)
 
 
-def case_of(propeller: Propeller, speed: float) -> RotorCase:
+def case_of(propeller: pm.Propeller, speed: float) -> RotorCase:
     """A propeller in flight as the solvers take it, in inviscid flow."""
     span = lattice_interpolation(propeller.r_over_R, 24)
     nodes = lattice_nodes(Blade.from_propeller(propeller), span, 8)
@@ -65,7 +63,7 @@ def case_of(propeller: Propeller, speed: float) -> RotorCase:
     return RotorCase(rotor, RotorState(RPM * RAD_PER_S, speed, AIR), wake=TRANSPORT)
 
 
-def relaxed(propeller: Propeller, speed: float, steps: int = STEPS) -> dict[str, float]:
+def relaxed(propeller: pm.Propeller, speed: float, steps: int = STEPS) -> dict[str, float]:
     """Thrust and power of the wake that moves as it says, and how it moves, in w."""
     case = case_of(propeller, speed)
     rotor, state = case.rotor, case.state
@@ -115,7 +113,7 @@ def relaxed(propeller: Propeller, speed: float, steps: int = STEPS) -> dict[str,
     return {
         "CT": float(numbers.CT),
         "CP": float(numbers.CP),
-        "P/ideal": torque * omega / (thrust * (speed + induced)),
+        "P/ideal": float(torque * omega / (thrust * (speed + induced))),
         "r/r0": float(drift[2, -1]),
         "before": float(outer[bands[0]].mean() / induced),
         "after": float(outer[bands[1]].mean() / induced),
@@ -130,7 +128,7 @@ def _settled(velocity: np.ndarray) -> np.ndarray:
     return np.where(age > LAST_TURN, velocity[before].mean(), velocity)
 
 
-def prescribed(propeller: Propeller, speed: float) -> dict[str, float]:
+def prescribed(propeller: pm.Propeller, speed: float) -> dict[str, float]:
     """Thrust and power of the prescribed wake."""
     case = case_of(propeller, speed)
     loads = axial.solve(case)
@@ -142,7 +140,7 @@ def compare(cases: list[tuple[str, int, float]], steps: int = STEPS) -> list[dic
     """A row of figures for every case."""
     rows = []
     for name, n_blades, J in cases:
-        propeller = dataclasses.replace(load_propeller(name), n_blades=n_blades)
+        propeller = dataclasses.replace(pm.load_propeller(name), n_blades=n_blades)
         speed = J * RPM / 60.0 * propeller.diameter
         free, ours = relaxed(propeller, speed, steps), prescribed(propeller, speed)
         differences = {

@@ -5,7 +5,6 @@ from __future__ import annotations
 import csv
 import dataclasses
 
-import numpy as np
 import pytest
 
 pytest.importorskip("matplotlib")
@@ -14,6 +13,7 @@ from propmdao.acoustics.kinematics.observers import arc
 from propmdao.analysis.single_point import analyze
 from propmdao.analysis.wind_tunnel import calibrated_twist_deg
 from propmdao.formats.propellers import load_propeller
+from propmdao.records.wake_law import WakeLaw
 
 CASE = "apcsf_11x4.7"
 
@@ -110,14 +110,14 @@ def test_prescribed_wake_has_the_thrust_of_the_one_that_moves_as_it_says(import_
     assert 1.1 < row["P/ideal"] < 1.2  # as rotors have it
 
 
-def test_wake_of_the_sensitivities_is_the_solver_s_own(few_points, import_study):
-    _, few = few_points
+def test_drift_of_the_wake_is_changed_in_all_its_parts(import_study):
     sensitivity = import_study("aerodynamic_sensitivity")
-    propeller = load_propeller(CASE)
-    for points in (few.static, few.dynamic):
-        own = sensitivity.computed(propeller, points, 0.5)
-        same = sensitivity.computed_with_wake(propeller, points, 0.5, transport=1.0)
-        np.testing.assert_allclose((same.CT, same.CP), (own.CT, own.CP), rtol=1e-4)
+    variants = {label: how for label, _, how in sensitivity.variants(load_propeller(CASE), False)}
+    wake = variants["drift of the wake x 1.5"].keywords["wake"]
+    default = WakeLaw()
+    for name in ("before_passage", "after_passage", "inside"):
+        assert getattr(wake, name) == pytest.approx(1.5 * getattr(default, name))
+    assert (wake.passage_width, wake.inner_edge) == (default.passage_width, default.inner_edge)
 
 
 def test_hover_noise_table_is_that_of_its_tones(import_study, monkeypatch, capsys, tmp_path):

@@ -18,6 +18,7 @@ from numpy.testing import assert_allclose
 
 pytest.importorskip("matplotlib")
 
+from propmdao.acoustics.kinematics.observers import arc
 from propmdao.analysis.comparisons import ROWS, at_observer
 from propmdao.analysis.single_point import analyze
 from propmdao.components import AcousticsComp
@@ -81,7 +82,7 @@ def analysis(coarse: Fidelity) -> Analysed:
     """What the microphone hears of a propeller at a thrust or rpm."""
 
     def of(propeller: Propeller, **drive: float) -> dict[str, float]:
-        observers = [(1.905, -45.0)]
+        observers = arc(1.905, -45.0)
         return at_observer(
             analyze(propeller, **drive, speed=8.0, observers=observers, fidelity=coarse)
         )
