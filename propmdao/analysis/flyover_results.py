@@ -29,13 +29,14 @@ class Flight:
     Attributes
     ----------
     height : float
-        Of the propeller above the ground [m].
+        Height of the propeller above the ground [m].
     sideline : float
-        Of the microphone beside the track [m].
+        Distance of the microphone from the track, positive on the left [m].
     microphone_height : float
-        Above the ground [m]; 0: flush with it, 1.2 m in certification of large aeroplanes.
+        Height of the microphone above the ground [m]; 0: flush with it, 1.2 m in certification of
+        large aeroplanes.
     duration : float or None
-        How long it is heard [s]; by default until it is six times as far away as at its nearest,
+        Time over which the propeller is heard [s]; by default until it is six times as far away as at its nearest,
         20 s at least.
     absorption : bool
         Whether the air absorbs sound.
@@ -53,7 +54,7 @@ class Flight:
     absorption: bool = True
 
     def __post_init__(self) -> None:
-        """Refuse what cannot be."""
+        """Refuse flights that pass no microphone."""
         if not 0.0 < self.height < np.inf:
             raise ValueError(f"height of flight must be positive [m]; it is {self.height:g}")
         if not np.isfinite(self.sideline):

@@ -39,11 +39,11 @@ def fly_over(analysis: Analysis, flight: Flight, *, sound: bool = False) -> Flyo
     Parameters
     ----------
     analysis : Analysis
-        Its loads, at the speed of the flight. Boundary layers are tripped in the broadband noise,
+        Analysis at the speed of the flight. Boundary layers are tripped in the broadband noise,
         which is always part of a flyover, as the analysis' noise model says; untripped where it has
         none.
     flight : Flight
-        Where it flies, where the microphone is.
+        Height of the flight, place of the microphone.
     sound : bool
         Whether the pressure record is wanted.
 

@@ -91,12 +91,12 @@ class Request:
         return from_plain(cls, {name: values[name] for name in names if name in values})
 
     @classmethod
-    def of(cls, given: Mapping[str, Any] | None = None, **values: Any) -> Request:
+    def of(cls, records: Mapping[str, Any] | None = None, **values: Any) -> Request:
         """Make a request of single values.
 
         Parameters
         ----------
-        given : mapping of str to record, optional
+        records : mapping of str to record, optional
             Whole records by the attribute's name; None counts as not given.
         **values
             Single values, see `Asked`. A record that is given takes no single values.
@@ -113,7 +113,7 @@ class Request:
         ValueError
             If a value contradicts a record or another value, or is out of range.
         """
-        records = {name: record for name, record in (given or {}).items() if record is not None}
+        given_records = {k: record for k, record in (records or {}).items() if record is not None}
         places: dict[str, dict[str, Any]] = {}
         for name, value in values.items():
             if name not in _PLACES:
@@ -122,7 +122,7 @@ class Request:
                 )
             place = _PLACES[name]
             record = place.split(".")[0]
-            if record in records:
+            if record in given_records:
                 raise ValueError(f"{name} is given, and {record}, which holds it: give one of them")
             places.setdefault(place, {})[name] = value
         made: dict[str, Any] = {
@@ -133,7 +133,7 @@ class Request:
             "model": lambda: _model(places),
             "listening": lambda: Listening(**places.get("listening", {})),
         }
-        return cls(**{name: records.get(name) or make() for name, make in made.items()})
+        return cls(**{name: given_records.get(name) or make() for name, make in made.items()})
 
 
 #: Record that holds each value, as a dotted path.

@@ -44,7 +44,7 @@ def strip_flow(
     Returns
     -------
     StripFlow
-        Of blade 1 at azimuth 0.
+        Strips of blade 1 at azimuth 0.
 
     Notes
     -----

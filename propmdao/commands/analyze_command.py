@@ -171,9 +171,9 @@ def _analyze(options: argparse.Namespace) -> None:
         report.print_analyses(results)
 
 
-def _key(airfoil: str, given: Iterable[str]) -> str | None:
+def _key(airfoil: str, keys: Iterable[str]) -> str | None:
     """Key of what is given for an airfoil: its name, or its file's without folder and ending."""
-    return next((key for key in given if key in (airfoil, Path(airfoil).stem)), None)
+    return next((key for key in keys if key in (airfoil, Path(airfoil).stem)), None)
 
 
 def _check(options: argparse.Namespace) -> None:
@@ -233,12 +233,12 @@ def _own_polars(options: Sequence[Sequence[str]]) -> dict[str, PolarTable]:
     return tables
 
 
-def _rpm_values(given: list[float | list[float]] | None) -> list[float | None]:
-    """All rpm in the order given; one None where thrust is given instead."""
-    if given is None:
+def _rpm_values(values: list[float | list[float]] | None) -> list[float | None]:
+    """All rpm in the order values; one None where thrust is given instead."""
+    if values is None:
         return [None]
-    return [rpm for item in given for rpm in (item if isinstance(item, list) else [item])]
+    return [rpm for item in values for rpm in (item if isinstance(item, list) else [item])]
 
 
-def _is_list(given: list[float | list[float]] | None) -> bool:
-    return given is not None and (len(given) > 1 or isinstance(given[0], list))
+def _is_list(values: list[float | list[float]] | None) -> bool:
+    return values is not None and (len(values) > 1 or isinstance(values[0], list))

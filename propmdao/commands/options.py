@@ -27,20 +27,20 @@ def add_command(
     Parameters
     ----------
     commands : argparse subparsers
-        Of the program.
+        Commands of the program.
     name : str
-        What is typed.
+        Name of the command, as it is typed.
     run : callable
-        Gets what was typed; raises ValueError on bad input.
+        Function of the arguments that were typed; raises ValueError on bad input.
     summary : str
-        Its line in the help of the program.
+        Line of the command in the help of the program.
     description, examples : str
-        Its own help, before and after the options, with the line breaks as they are.
+        Help of the command, before and after the options, with the line breaks as they are.
 
     Returns
     -------
     argparse.ArgumentParser
-        To add arguments to; values such as -2:4:0.5 may follow its options.
+        Parser to add arguments to; values such as -2:4:0.5 may follow its options.
     """
     command = commands.add_parser(
         name,
@@ -125,7 +125,7 @@ def take_negative_ranges(command: argparse.ArgumentParser) -> None:
     Parameters
     ----------
     command : argparse parser
-        Of a command. argparse takes -2 for a value and -2:4:0.5 for an option it does not know.
+        Parser of a command. argparse takes -2 for a value and -2:4:0.5 for an option it does not know.
     """
     command._negative_number_matcher = re.compile(r"-\.?\d")
 
@@ -167,24 +167,24 @@ def add_asked(
     drive: argparse._ActionsContainer | None = None
     for name in names:
         quantity = ASKED[name]
-        parser, how = command, dict[str, Any](dest=name, default=quantity.default)
+        parser, settings = command, dict[str, Any](dest=name, default=quantity.default)
         text = quantity.help
         if name in ("rpm", "thrust"):
             drive = drive or command.add_mutually_exclusive_group(required=required)
             parser = drive
         if not quantity.placeholder:
-            how |= {"action": "store_const", "const": not quantity.default}
+            settings |= {"action": "store_const", "const": not quantity.default}
         elif quantity.placeholder.startswith("{"):
-            how["choices"] = quantity.placeholder.strip("{}").split(",")
+            settings["choices"] = quantity.placeholder.strip("{}").split(",")
         else:
-            how |= {"metavar": quantity.placeholder, "type": number}
+            settings |= {"metavar": quantity.placeholder, "type": number}
         if name == "rpm" and several_rpm:
-            how |= {"type": number_or_range, "action": "append"}
+            settings |= {"type": number_or_range, "action": "append"}
             text += (
                 ", or a range START:STOP:STEP that includes STOP; may be repeated. Ranges and"
                 " repetition give a list, of one result per value"
             )
-        parser.add_argument(quantity.option, help=text, **how)
+        parser.add_argument(quantity.option, help=text, **settings)
 
 
 def asked_of(options: argparse.Namespace) -> dict[str, Any]:

@@ -135,25 +135,25 @@ def _sweep(options: argparse.Namespace) -> None:
 def _points(options: argparse.Namespace) -> list[dict[str, float]]:
     from propmdao.analysis.sweeps import grid, latin_hypercube, read_points
 
-    given = {variable: getattr(options, variable) for variable in VARIABLES}
-    given = {variable: texts for variable, texts in given.items() if texts}
+    typed = {variable: getattr(options, variable) for variable in VARIABLES}
+    typed = {variable: texts for variable, texts in typed.items() if texts}
     drawn: list[dict[str, float]] = [{}]
     if options.samples is not None:
         if options.samples < 1:
             raise ValueError(f"--samples must be 1 or more; it is {options.samples}")
         ranges = {
-            variable: _low_high(variable, given.pop(variable), number)
-            for variable, texts in list(given.items())
+            variable: _low_high(variable, typed.pop(variable), number)
+            for variable, texts in list(typed.items())
             if any(":" in text for text in texts)
         }
         if not ranges:
             raise ValueError("--samples needs a range LOWEST:HIGHEST to draw from")
         drawn = latin_hypercube(ranges, options.samples, options.seed)
     listed = [{}] if options.points is None else read_points(options.points)
-    for variable in given:
+    for variable in typed:
         if any(variable in point for point in listed):
             raise ValueError(f"{variable} is given as an option and in '{options.points}'")
-    values = {name: _values(name, texts, number_or_range) for name, texts in given.items()}
+    values = {name: _values(name, texts, number_or_range) for name, texts in typed.items()}
     n_points = len(drawn) * len(listed)
     for numbers in values.values():
         n_points *= len(numbers)

@@ -42,7 +42,7 @@ def add_wopwop(commands: argparse._SubParsersAction[Any]) -> None:
     Parameters
     ----------
     commands : argparse subparsers
-        Of ``propmdao``.
+        Commands of ``propmdao``.
     """
     command = add_command(
         commands, "wopwop", _wopwop, "run a case of PSU-WOPWOP", DESCRIPTION, EXAMPLES
@@ -99,8 +99,8 @@ def _group(result: CaseResult) -> dict[str, Any]:
         level = spectra[""][i]
         # The first and the last bin may be peaks, too.
         edged = np.pad(level, 1, constant_values=-np.inf)
-        found = find_peaks(edged, height=level.max() - _PEAK_RANGE_DB)[0] - 1
-        loudest = np.sort(found[np.argsort(level[found])[-_PEAKS:]])
+        peak_bins = find_peaks(edged, height=level.max() - _PEAK_RANGE_DB)[0] - 1
+        loudest = np.sort(peak_bins[np.argsort(level[peak_bins])[-_PEAKS:]])
         peaks = [
             {"frequency_hz": float(frequency[k])}
             | {f"spl_{part}db": float(spectrum[i, k]) for part, spectrum in spectra.items()}
@@ -209,8 +209,8 @@ def _print(groups: Sequence[dict[str, Any]]) -> None:
         top = max(observers, key=lambda observer: float(observer["oaspl_db"]))
         peaks = table("tone\nHz", "thickness\ndB", "loading\ndB", "total\ndB")
         for peak in top["peaks"]:
-            frequency, *heard = peak.values()
-            peaks.add_row(f"{frequency:.1f}", *map(_level, heard))
+            frequency, *peak_levels = peak.values()
+            peaks.add_row(f"{frequency:.1f}", *map(_level, peak_levels))
         console.print(f"Tones at observer {top['observer']}, the loudest:", highlight=False)
         console.print(peaks)
 

@@ -22,15 +22,15 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 
-def analysis_figures(analysis: Analysis, at: int | None = None) -> dict[str, Figure]:
+def analysis_figures(analysis: Analysis, observer: int = 0) -> dict[str, Figure]:
     """Draw an analysis.
 
     Parameters
     ----------
     analysis : Analysis
         Analysis with one observer or more.
-    at : int, optional
-        Index of the observer of spectrum and pressure; by default the first.
+    observer : int
+        Index of the observer of spectrum and pressure.
 
     Returns
     -------
@@ -48,7 +48,6 @@ def analysis_figures(analysis: Analysis, at: int | None = None) -> dict[str, Fig
     positions = analysis.listening.observers
     if len(positions) == 0:
         raise ValueError("figures need observers")
-    observer = 0 if at is None else at
     if not 0 <= observer < len(positions):
         raise ValueError(f"observer must be within 0 ... {len(positions) - 1}; it is {observer}")
     sound = analysis_sound(analysis)
@@ -80,7 +79,7 @@ def analysis_sound(analysis: Analysis) -> Sound:
     Returns
     -------
     Sound
-        Its tones, and its broadband noise where there is any.
+        Tones, and broadband noise where there is any.
     """
     if analysis.broadband is None:
         return Sound.of_tones(analysis.tones)
