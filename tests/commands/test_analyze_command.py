@@ -23,7 +23,7 @@ def run(*arguments: str, **environment: str) -> subprocess.CompletedProcess[str]
     """The installed command in a process of its own, without a display."""
     surroundings = {key: value for key, value in os.environ.items() if key != "DISPLAY"}
     return subprocess.run(
-        [sys.executable, "-m", "propmdao.commands.program", *arguments],
+        [sys.executable, "-m", "propmdao", *arguments],
         env=surroundings | environment,
         capture_output=True,
         text=True,

@@ -201,7 +201,7 @@ def test_a_killed_sweep_resumes_to_the_same_table(tmp_path: Path) -> None:
     sweep_of = [
         sys.executable,
         "-m",
-        "propmdao.commands.program",
+        "propmdao",
         "sweep",
         PROPELLER,
         "--out",
