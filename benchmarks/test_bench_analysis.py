@@ -127,7 +127,7 @@ def test_command_line(benchmark, tmp_path, cache):
     command = [
         sys.executable,
         "-m",
-        "propmdao.commands.program",
+        "propmdao",
         "analyze",
         "apcsf_11x4.7",
         "--thrust",

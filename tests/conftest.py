@@ -3,9 +3,17 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
+import numpy as np
 import pytest
+
+from propmdao.formats.wopwop.geometry_file import GeometryFile, write_geometry
+from propmdao.formats.wopwop.loading_file import LoadingFile, write_loading
+from propmdao.formats.wopwop.namelists import write_namelists
+from propmdao.formats.wopwop.zones import Zone
 
 # Read when OpenMDAO is imported, so set before any test module is.
 os.environ["OPENMDAO_REPORTS"] = "0"
@@ -42,3 +50,87 @@ def checkout() -> Path:
     if not (root / "propmdao").is_dir():
         pytest.skip("not run from a source checkout")
     return root
+
+
+# A case of PSU-WOPWOP, for its formats and for the analysis that runs it.
+N_SPAN = 9  # nodes along the blade
+
+
+def box(size: tuple[float, float, float], center: tuple[float, float, float]) -> Zone:
+    """A closed box along x: a loop of 5 nodes around it, ends drawn together."""
+    y, z = (np.array(q) for q in ([-1, 1, 1, -1, -1], [-1, -1, 1, 1, -1]))
+    x = np.array([-1, *np.linspace(-1, 1, N_SPAN), 1])
+    shrink = np.array([0, *np.ones(N_SPAN), 0])[:, None]
+    nodes = np.stack([np.broadcast_to(x[:, None], (x.size, 5)), shrink * y, shrink * z])
+    half = np.array(size)[:, None, None] / 2
+    normals = nodes / np.linalg.norm(nodes, axis=0)
+    values = np.concatenate([half * nodes + np.array(center)[:, None, None], normals])
+    return Zone("box", values[None].astype(np.float32))
+
+
+def line(r: np.ndarray) -> Zone:
+    """A line of nodes along x."""
+    normal = np.stack([0 * r, 0 * r, 1 + 0 * r])
+    return Zone("line", np.concatenate([[r, 0 * r, 0 * r], normal])[None, :, :, None].astype("f4"))
+
+
+@pytest.fixture
+def geometry() -> GeometryFile:
+    radius = np.linspace(0.2, 0.5, N_SPAN)
+    return GeometryFile((box((0.3, 0.04, 0.01), (0.35, 0, 0)), line(radius)), comment="two zones")
+
+
+@pytest.fixture
+def loading() -> LoadingFile:
+    """10 N/m of lift and 1 N/m of drag on the blade, turning along +y."""
+    force = np.array([0.0, -1.0, 10.0])[:, None, None] * np.ones((N_SPAN, 1))
+    return LoadingFile((Zone("line loads", force[None].astype(np.float32)),), (-2,), 2)
+
+
+@pytest.fixture
+def make_case(tmp_path: Path, geometry: GeometryFile, loading: LoadingFile) -> Callable[..., Path]:
+    """Write a case of one rotor with two blades; groups can be changed or added to."""
+
+    def make(
+        loading: LoadingFile = loading, n_blades: int = 2, omega: float = 100.0, **changes: Any
+    ) -> Path:
+        write_geometry(tmp_path / "geometry.dat", geometry)
+        write_loading(tmp_path / "loading.dat", loading)
+        groups: dict[str, dict] = {
+            "EnvironmentIn": {"nbSourceContainers": 1, "nbObserverContainers": 1},
+            "EnvironmentConstants": {"rho": 1.2, "c": 340.0},
+            "ObserverIn": {
+                "title": "microphones",
+                "nt": 128,
+                "tMin": 0.0,
+                "tMax": 2 * np.pi / 100.0 * 127 / 128,
+                "nbx": 2,
+                "xMin": 3.0,
+                "xMax": 4.0,
+                "nby": 1,
+                "yMin": 0.0,
+                "yMax": 0.0,
+                "nbz": 1,
+                "zMin": -2.0,
+                "zMax": -2.0,
+                "highPassFrequency": 5.0,
+            },
+        }
+        for name, values in changes.items():
+            groups[name] = groups.get(name, {}) | values
+        rotor = {"title": "rotor", "nbContainer": n_blades, "nbBase": 1, "dTau": 2e-4}
+        turn = {"AngleType": "KnownFunction", "Omega": omega, "Psi0": 0.0, "AxisValue": [0, 0, 1]}
+        case = [*groups.items(), ("ContainerIn", rotor), ("CB", turn | {"rotation": True})]
+        for blade in range(n_blades):
+            angle = 2 * np.pi * blade / n_blades
+            files = {"patchGeometryFile": "geometry.dat", "patchLoadingFile": "loading.dat"}
+            offset = {"nbBase": 1, "periodicKeyOffset": angle}
+            case.append(("ContainerIn", {"title": f"blade {blade + 1}"} | files | offset))
+            fixed = {"AngleType": "TimeIndependent", "AxisValue": [0, 0, 1], "AngleValue": angle}
+            case.append(("CB", fixed))
+        write_namelists(tmp_path / "case.nam", case)
+        names = {"globalFolderName": "./", "caseNameFile": "case.nam"}
+        write_namelists(tmp_path / "cases.nam", [("casename", names)])
+        return tmp_path
+
+    return make

@@ -36,8 +36,8 @@ class Flight:
         Height of the microphone above the ground [m]; 0: flush with it, 1.2 m in certification of
         large aeroplanes.
     duration : float or None
-        Time over which the propeller is heard [s]; by default until it is six times as far away as at its nearest,
-        20 s at least.
+        Time over which the propeller is heard [s]; by default until it is six times as far away as
+        at its nearest, 20 s at least.
     absorption : bool
         Whether the air absorbs sound.
 

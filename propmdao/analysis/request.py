@@ -152,7 +152,7 @@ def _model(places: Mapping[str, dict[str, Any]]) -> Model:
     self_noise = places.get("model.noise.broadband", {})
     trip = self_noise.get("trip", "none")
     if trip != "none" and not broadband:
-        raise ValueError(f"trip {trip!r} is about broadband noise: ask for broadband=True")
+        raise ValueError(f"trip {trip!r} is about broadband noise: ask for broadband noise, too")
     transition = Transition(**places.get("model.loads.transition", {}))
     return Model(
         loads=LoadModel(**places.get("model.loads", {}), transition=transition),

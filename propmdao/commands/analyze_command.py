@@ -144,7 +144,8 @@ def _analyze(options: argparse.Namespace) -> None:
     from propmdao.analysis.single_point import analyze
     from propmdao.formats.propellers import load_propeller
 
-    propeller = load_propeller(options.propeller)
+    with warning_lines("analyze"):
+        propeller = load_propeller(options.propeller)
     own = _own_polars(options.polar)
     names = [name for _, name in propeller.airfoils]
     for airfoil in own:

@@ -94,7 +94,8 @@ def _export(options: argparse.Namespace) -> None:
     from propmdao.formats.propellers import load_propeller
     from propmdao.propeller.changes import Change
 
-    propeller = load_propeller(options.propeller)
+    with warning_lines("export"):
+        propeller = load_propeller(options.propeller)
     if writer is None:
         _write_case(options, propeller)
         return

@@ -131,11 +131,11 @@ def _flyover(options: argparse.Namespace) -> None:
         not options.no_absorption,
     )
     Request.of(**asked)
-    propeller = load_propeller(options.propeller)
     from propmdao.analysis.flyovers import fly_over
     from propmdao.analysis.single_point import analyze
 
     with warning_lines("flyover"):
+        propeller = load_propeller(options.propeller)
         analysis = analyze(propeller, **asked)
     flyover = fly_over(analysis, flight, sound=options.wav is not None)
     result = analysis.to_dict()

@@ -125,7 +125,8 @@ def take_negative_ranges(command: argparse.ArgumentParser) -> None:
     Parameters
     ----------
     command : argparse parser
-        Parser of a command. argparse takes -2 for a value and -2:4:0.5 for an option it does not know.
+        Parser of a command. argparse takes -2 for a value and -2:4:0.5 for an option that it does
+        not know.
     """
     command._negative_number_matcher = re.compile(r"-\.?\d")
 

@@ -107,7 +107,3 @@ def _list(options: argparse.Namespace) -> None:
         from propmdao.commands import report
 
         report.print_catalog(propellers)
-
-
-if __name__ == "__main__":
-    sys.exit(main())

@@ -175,16 +175,15 @@ def _operating_points(analyses: Iterable[dict[str, Any]]) -> Table:
 
 
 def _levels(analyses: Sequence[dict[str, Any]]) -> Table:
-    table = _table()
     columns = {
         "radius": ("radius\nm", ".4g"),
         "elevation_deg": ("elev.\ndeg", ".4g"),
         "azimuth_deg": ("azim.\ndeg", ".4g"),
         "spl_bpf_db": ("BPF\ndB", ".1f"),
         "oaspl_db": ("tones\ndB", ".1f"),
-        "oaspl_thickness_db": ("thick.\ndB", ".1f"),
-        "oaspl_loading_db": ("load.\ndB", ".1f"),
-        "oaspl_broadband_db": ("broad.\ndB", ".1f"),
+        "oaspl_thickness_db": ("thick-\nness\ndB", ".1f"),
+        "oaspl_loading_db": ("load-\ning\ndB", ".1f"),
+        "oaspl_broadband_db": ("broad-\nband\ndB", ".1f"),
         "oaspl_total_db": ("total\ndB", ".1f"),
         "oaspl_dba": ("tones\ndBA", ".1f"),
         "oaspl_total_dba": ("total\ndBA", ".1f"),
@@ -193,6 +192,8 @@ def _levels(analyses: Sequence[dict[str, Any]]) -> Table:
     if not any(observer["azimuth_deg"] for observer in observers):
         del columns["azimuth_deg"]
     columns = {key: column for key, column in columns.items() if key in observers[0]}
+    # With broadband noise there are up to twelve columns, which have to fit a terminal of 80.
+    table = _table(padding=1 if len(columns) < 9 else 0)
     table.add_column("rpm", justify="right")
     for heading, _ in columns.values():
         table.add_column(heading, justify="right")
@@ -205,8 +206,8 @@ def _levels(analyses: Sequence[dict[str, Any]]) -> Table:
     return table
 
 
-def _table() -> Table:
-    return Table(box=box.SIMPLE, pad_edge=False, collapse_padding=True)
+def _table(padding: int = 1) -> Table:
+    return Table(box=box.SIMPLE, pad_edge=False, collapse_padding=True, padding=(0, padding))
 
 
 def _level(value: float, form: str) -> str:

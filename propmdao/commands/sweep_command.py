@@ -19,6 +19,7 @@ from propmdao.commands.options import (
     number,
     number_or_range,
 )
+from propmdao.commands.warning_lines import warning_lines
 from propmdao.records.quantities import VARIABLES
 
 SWEEP_DESCRIPTION = """\
@@ -111,7 +112,8 @@ def _sweep(options: argparse.Namespace) -> None:
     from propmdao.runtime.worker_processes import WorkerLostError
 
     points = _points(options)
-    propeller = load_propeller(options.propeller)
+    with warning_lines("sweep"):
+        propeller = load_propeller(options.propeller)
     try:
         n_new, failures = sweep(
             propeller,

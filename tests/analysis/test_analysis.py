@@ -5,11 +5,12 @@ import json
 import numpy as np
 import pytest
 
-from propmdao.acoustics.kinematics.observers import arc
+from propmdao.acoustics.kinematics.observers import arc, point
 from propmdao.analysis.single_point import analyze
 from propmdao.formats.propellers import load_propeller
 from propmdao.records.fidelity import Fidelity
 from propmdao.records.listening import Surroundings
+from propmdao.records.quantities import LEVELS
 
 SLOW_FLYER = load_propeller("apcsf_11x4.7")
 COARSE = Fidelity(n_chordwise=4, n_spanwise=10, n_contour=21, n_surface_span=12, n_harmonics=3)
@@ -56,7 +57,8 @@ def test_hover_and_standstill_are_ordinary():
 
 def test_viscosity_takes_thrust_and_adds_power():
     viscous, inviscid = (run(rpm=4200.0, speed=8.0, viscous=on) for on in (True, False))
-    assert viscous["viscous"] and not inviscid["viscous"]
+    assert [one["model"]["loads"]["viscous"] for one in (viscous, inviscid)] == [True, False]
+    assert viscous["polars"] and not inviscid["polars"]
     assert viscous["thrust"] < 0.95 * inviscid["thrust"]
     assert viscous["eta"] < 0.9 * inviscid["eta"]
     without_delay = run(rpm=4200.0, stall_delay=False)
@@ -64,16 +66,21 @@ def test_viscosity_takes_thrust_and_adds_power():
 
 
 def test_broadband_noise_adds_to_the_tones():
-    where = {"rpm": 4200.0, "observers": [(1.905, -45.0), (1.905, 0.0)]}
+    where = {"rpm": 4200.0, "observers": arc(1.905, [-45.0, 0.0])}
     tones, both = run(**where), run(**where, broadband=True)
     for alone, total in zip(tones["observers"], both["observers"], strict=True):
         assert total["harmonics"] == alone["harmonics"]
+        # oaspl_db and oaspl_dba are of the tones, whatever else is heard.
+        assert alone.keys() < total.keys()
+        assert all(total[name] == alone[name] for name in LEVELS)
         noise = total["oaspl_broadband_db"]
         energy = 10 * np.log10(10 ** (alone["oaspl_db"] / 10) + 10 ** (noise / 10))
-        assert total["oaspl_db"] == pytest.approx(energy)
+        assert total["oaspl_total_db"] == pytest.approx(energy)
+        weighted = (10 ** (total[name] / 10) for name in ("oaspl_dba", "oaspl_broadband_dba"))
+        assert total["oaspl_total_dba"] == pytest.approx(10 * np.log10(sum(weighted)))
         bands = [band["spl_db"] for band in total["third_octave"]]
         assert 10 * np.log10(sum(10 ** (level / 10) for level in bands)) == pytest.approx(energy)
-        assert total["oaspl_dba"] > alone["oaspl_dba"] + 5.0
+        assert total["oaspl_total_dba"] > alone["oaspl_dba"] + 5.0
         mechanisms = [key for key in total["broadband"][0] if key.endswith("_db")]
         for band in total["broadband"]:
             powers = [10 ** (band[key] / 10) for key in mechanisms if key != "spl_db"]
@@ -96,7 +103,7 @@ def test_twist_offset_turns_the_whole_blade():
         ({"thrust": 0.0}, "thrust must be positive; it is 0 N"),
         ({"rpm": 4000.0, "speed": -2.0}, "speed must be 0 m/s or more; it is -2"),
         ({"rpm": 4000.0, "density": 0.0}, "density must be positive; it is 0 kg/m3"),
-        ({"rpm": 4000.0, "observers": [(0.1, 0.0)]}, "observer 1 is inside the source region"),
+        ({"rpm": 4000.0, "observers": arc(0.1, [0.0])}, "observer 1 is inside the source region"),
         ({"rpm": 40000.0}, "relative tip Mach number must be below 1"),
         ({"thrust": 900.0}, "thrust 900 N is out of reach at 0 m/s"),
         ({"thrust": 1.0, "speed": 310.0}, "speed must be below 306"),
@@ -111,19 +118,27 @@ def test_bad_input_is_refused_in_one_line(asked, says):
 
 def test_on_the_ground_all_is_six_decibels_louder_and_nothing_else_changes():
     """Observers on the ground 3 m below a hovering rotor, or wherever the ground is: the same."""
-    places = [(5.0, np.degrees(np.arcsin(-0.6)), azimuth) for azimuth in (0.0, 70.0)]
+    places = point(5.0, np.degrees(np.arcsin(-0.6)), [0.0, 70.0])
     free = run(rpm=4200.0, observers=places, broadband=True)
     for ground in ("flush", 3.0):
         heard = run(rpm=4200.0, observers=places, broadband=True, surroundings=Surroundings(ground))
-        assert heard["thrust"] == free["thrust"] and heard["surroundings"]["ground"] == ground
+        assert heard["thrust"] == free["thrust"]
+        assert heard["listening"]["surroundings"]["ground"] == ground
         for ours, theirs in zip(heard["observers"], free["observers"], strict=True):
             assert ours["azimuth_deg"] == theirs["azimuth_deg"]
-            for name in ("oaspl_db", "oaspl_dba", "oaspl_thickness_db", "oaspl_broadband_db"):
+            for name in (
+                "oaspl_db",
+                "oaspl_dba",
+                "oaspl_thickness_db",
+                "oaspl_broadband_db",
+                "oaspl_total_db",
+                "oaspl_total_dba",
+            ):
                 assert ours[name] - theirs[name] == pytest.approx(20 * np.log10(2), abs=1e-6)
 
 
 def test_in_axial_flight_it_is_as_loud_all_around_until_the_ground_is_on_one_side():
-    places = [(2.0, 10.0, azimuth) for azimuth in (0.0, 90.0, 180.0)]
+    places = point(2.0, 10.0, [0.0, 90.0, 180.0])
     free, level = (
         [o["oaspl_db"] for o in run(rpm=4200.0, speed=8.0, observers=places, **how)["observers"]]
         for how in ({}, {"surroundings": Surroundings(2.0, level_flight=True)})
@@ -134,9 +149,10 @@ def test_in_axial_flight_it_is_as_loud_all_around_until_the_ground_is_on_one_sid
 
 
 def test_tripped_blades_shed_no_laminar_vortices():
-    asked = {"rpm": 4200.0, "speed": 8.0, "observers": [(2.0, -20.0)], "broadband": True}
+    asked = {"rpm": 4200.0, "speed": 8.0, "observers": arc(2.0, [-20.0]), "broadband": True}
     untripped, tripped = (run(**asked, trip=trip) for trip in ("none", "heavy"))
-    assert (untripped["trip"], tripped["trip"]) == ("none", "heavy")
+    said = [one["model"]["noise"]["broadband"]["trip"] for one in (untripped, tripped)]
+    assert said == ["none", "heavy"]
     shed = [band["laminar_shedding_db"] for band in tripped["observers"][0]["broadband"]]
     assert max(shed) == -200.0
     loud, quiet = (one["observers"][0]["oaspl_broadband_db"] for one in (untripped, tripped))

@@ -9,6 +9,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 from propmdao.acoustics.broadband.self_noise import SelfNoise
+from propmdao.acoustics.kinematics.observers import arc
 from propmdao.acoustics.levels.weighting import a_weighting
 from propmdao.analysis.self_noise import BANDS_HZ, strip_flow
 from propmdao.analysis.single_point import analyze
@@ -17,10 +18,11 @@ from propmdao.geometry.blade import Blade
 from propmdao.geometry.lattice import strip_interpolation
 from propmdao.geometry.trailing_edge import trailing_edge
 from propmdao.records.fidelity import Fidelity
+from propmdao.records.quantities import BROADBAND_LEVELS, LEVELS
 
 PROPELLER = load_propeller("apcsf_11x4.7")
 COARSE = Fidelity(n_chordwise=3, n_spanwise=10, n_contour=21, n_surface_span=12, n_harmonics=4)
-OBSERVERS = [(1.905, -45.0), (3.81, -45.0)]
+OBSERVERS = arc([1.905, 3.81], -45.0)
 RADII = strip_interpolation(PROPELLER.r_over_R, COARSE.n_spanwise)
 MECHANISMS = [field.name for field in dataclasses.fields(SelfNoise)]
 BLADE = Blade.from_propeller(PROPELLER)
@@ -112,10 +114,11 @@ def test_energies_of_mechanisms_add_up_to_the_broadband_level(observer):
 
 def test_third_octaves_hold_tones_and_broadband_noise(cruise, observer):
     level = 10 * np.log10(energy(column(observer["third_octave"], "spl_db")))
-    assert level == pytest.approx(observer["oaspl_db"], abs=1e-6)
+    assert level == pytest.approx(observer["oaspl_total_db"], abs=1e-6)
     tones = energy(column(observer["harmonics"], "spl_db"))
     noise = energy(column(observer["broadband"], "spl_db"))
-    assert 10 * np.log10(tones + noise) == pytest.approx(observer["oaspl_db"], abs=1e-6)
+    assert 10 * np.log10(tones) == pytest.approx(observer["oaspl_db"], abs=1e-6)
+    assert 10 * np.log10(tones + noise) == pytest.approx(observer["oaspl_total_db"], abs=1e-6)
     # Without tones a band is the noise alone.
     passage = observer["harmonics"][0]["frequency_hz"]
     bands = {round(row["frequency_hz"]): row["spl_db"] for row in observer["third_octave"]}
@@ -124,11 +127,12 @@ def test_third_octaves_hold_tones_and_broadband_noise(cruise, observer):
             assert bands[round(row["frequency_hz"])] == pytest.approx(row["spl_db"], abs=1e-9)
 
 
-def test_a_weighted_level_is_of_both(observer):
-    rows = [*observer["harmonics"], *observer["broadband"]]
-    weight = 20 * np.log10(np.asarray(a_weighting(column(rows, "frequency_hz"))))
-    level = 10 * np.log10(energy(column(rows, "spl_db") + weight))
-    assert level == pytest.approx(observer["oaspl_dba"], abs=1e-6)
+def test_a_weighted_levels_are_of_the_tones_of_the_noise_and_of_both(observer):
+    tones, noise = observer["harmonics"], observer["broadband"]
+    for rows, name in ((tones, ""), (noise, "broadband_"), ([*tones, *noise], "total_")):
+        weight = 20 * np.log10(np.asarray(a_weighting(column(rows, "frequency_hz"))))
+        level = 10 * np.log10(energy(column(rows, "spl_db") + weight))
+        assert level == pytest.approx(observer[f"oaspl_{name}dba"], abs=1e-6)
 
 
 def test_level_falls_by_six_decibels_where_the_distance_doubles(cruise):
@@ -145,7 +149,7 @@ def test_tones_are_the_same_with_and_without(cruise):
 
 def test_standing_still_is_silence():
     still = run(0.0, speed=0.0).to_dict()["observers"][0]
-    for key in ("oaspl_db", "oaspl_dba", "oaspl_broadband_db"):
+    for key in (*LEVELS, *BROADBAND_LEVELS):
         assert still[key] == pytest.approx(-200.0, abs=1e-3)
     assert_allclose(column(still["third_octave"], "spl_db"), -200.0, atol=1e-3)
 

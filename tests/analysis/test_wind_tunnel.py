@@ -121,8 +121,8 @@ def test_computed_is_the_analysis_of_every_point():
 def test_point_without_convergence_is_nan(monkeypatch):
     def never(*args, **settings):
         result = analyze(*args, **settings)
-        steady = dataclasses.replace(result.loads, converged=np.asarray(False))
-        return dataclasses.replace(result, steady=steady)
+        loads = dataclasses.replace(result.loads, converged=np.asarray(False))
+        return dataclasses.replace(result, loads=loads)
 
     monkeypatch.setattr("propmdao.analysis.wind_tunnel.analyze", never)
     asked = points([3000], [0.0], [0.1], [0.04])

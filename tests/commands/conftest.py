@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import math
 import sys
 import types
@@ -10,39 +11,63 @@ from typing import Any
 
 import pytest
 
+from propmdao.acoustics.kinematics.observers import directions
+from propmdao.analysis.request import Request
 from propmdao.commands.program import main
+from propmdao.propeller.description import Propeller
+
+
+@dataclasses.dataclass
+class Answer:
+    """In place of `propmdao.Analysis`: says what was asked, and the same numbers to everybody."""
+
+    propeller: Propeller
+    request: Request
+    polars: dict[str, str] = dataclasses.field(default_factory=dict)
+
+    def to_dict(self) -> dict[str, Any]:
+        asked = self.request
+        point = dict.fromkeys(["J", "torque", "shaft_power", "CT", "CQ", "CP"], 0.5)
+        levels = dict.fromkeys(["spl_bpf_db", "oaspl_db", "oaspl_loading_db", "oaspl_dba"], 50.0)
+        if asked.model.noise.broadband is not None:
+            levels |= {"oaspl_broadband_db": 61.0, "oaspl_broadband_dba": 62.0}
+            levels |= {"oaspl_total_db": 63.0, "oaspl_total_dba": 64.0}
+        names = ("name", "diameter", "n_blades", "source")
+        return {
+            "propeller": {name: getattr(self.propeller, name) for name in names},
+            **asked.to_dict(),
+            "polars": self.polars,
+            "rpm": 4000.0 if asked.point.rpm is None else asked.point.rpm,
+            "speed": asked.point.speed,
+            "rho": asked.point.air.density,
+            **point,
+            "thrust": 1.5,
+            "eta": math.nan,
+            "converged": True,
+            "failure": None,
+            "observers": [
+                {"elevation_deg": elevation, "azimuth_deg": azimuth, "radius": radius, **levels}
+                | {"oaspl_thickness_db": -math.inf, "harmonics": [], "third_octave": []}
+                for radius, elevation, azimuth in zip(
+                    *directions(asked.listening.observers).rounded(), strict=True
+                )
+            ],
+        }
 
 
 class Recorder:
     """In place of `propmdao.analyze`: keeps what it was asked, answers at once."""
 
     def __init__(self) -> None:
-        self.calls: list[dict[str, Any]] = []
+        self.asked: list[Request] = []
+        self.polars: list[Any] = []
 
-    def analyze(self, propeller: object, **asked: Any) -> types.SimpleNamespace:
-        self.calls.append(asked)
-        return types.SimpleNamespace(to_dict=lambda: self.found(asked))
-
-    def found(self, asked: dict[str, Any]) -> dict[str, Any]:
-        point = dict.fromkeys(["J", "torque", "shaft_power", "CT", "CQ", "CP"], 0.5)
-        levels = dict.fromkeys(["spl_bpf_db", "oaspl_db", "oaspl_loading_db", "oaspl_dba"], 50.0)
-        return {
-            "rpm": 4000.0 if asked["rpm"] is None else asked["rpm"],
-            "speed": asked["speed"],
-            "rho": asked["density"],
-            **point,
-            "thrust": 1.5,
-            "eta": math.nan,
-            "viscous": asked["viscous"],
-            "converged": True,
-            "failure": None,
-            "trip": asked["trip"] if asked["broadband"] else None,
-            "observers": [
-                {"elevation_deg": elevation, "azimuth_deg": azimuth, "radius": radius, **levels}
-                | {"oaspl_thickness_db": -math.inf, "harmonics": [], "third_octave": []}
-                for radius, elevation, azimuth in asked["observers"]
-            ],
-        }
+    def analyze(self, propeller: Propeller, *, polars: Any = None, **asked: Any) -> Answer:
+        records = {name: asked.pop(name, None) for name in ("change", "model", "listening")}
+        request = Request.of(records, **asked)
+        self.asked.append(request)
+        self.polars.append(polars)
+        return Answer(propeller, request)
 
 
 @pytest.fixture

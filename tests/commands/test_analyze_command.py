@@ -11,19 +11,31 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 
+from propmdao.acoustics.kinematics.observers import arc
+from propmdao.analysis.request import Request
 from propmdao.commands.program import main
+from propmdao.propeller.changes import Change
+from propmdao.records.air import Air
 from propmdao.records.listening import Surroundings
+from propmdao.records.models import LoadModel, Model, NoiseModel, SelfNoiseModel
+from propmdao.records.states import OperatingPoint
 
 PROPELLER = "apcsf_11x4.7"
+POLAR = "\n".join(
+    [" Mach = 0.000  Re = 0.100 e 6  Ncrit = 9.000", " alpha CL CD CDp CM", " --- --- ---"]
+    + [f"{a} {0.1 * a + 0.3:.3f} 0.0200 0.0100 -0.0500" for a in range(-10, 13)]
+    + [""]
+)
 
 
 def run(*arguments: str, **environment: str) -> subprocess.CompletedProcess[str]:
     """The installed command in a process of its own, without a display."""
     surroundings = {key: value for key, value in os.environ.items() if key != "DISPLAY"}
     return subprocess.run(
-        [sys.executable, "-m", "propmdao.commands.program", *arguments],
+        [sys.executable, "-m", "propmdao", *arguments],
         env=surroundings | environment,
         capture_output=True,
         text=True,
@@ -39,66 +51,50 @@ def test_analyze_passes_on_what_was_asked(
         " --arc 1.905 -45 -.5 45 --arc 3 0 --broadband --trip heavy --ground 9 --json".split()
     )
     assert status == 0
-    polars = [call.pop("polars") for call in recorder.calls]
-    assert polars[0] is not None
-    assert recorder.calls == [
-        {
-            "rpm": None,
-            "thrust": 1.2,
-            "speed": 8.0,
-            "density": 1.1,
-            "twist_offset_deg": -1.5,
-            "viscous": True,
-            "stall_delay": True,
-            "broadband": True,
-            "trip": "heavy",
-            "observers": [
-                (1.905, -45.0, 0.0),
-                (1.905, -0.5, 0.0),
-                (1.905, 45.0, 0.0),
-                (3.0, 0.0, 0.0),
-            ],
-            "surroundings": Surroundings(ground=9.0),
-        }
-    ]
+    (asked,) = recorder.asked
+    assert recorder.polars[0] is not None
+    assert asked.point == OperatingPoint(thrust=1.2, speed=8.0, air=Air(density=1.1))
+    assert asked.change == Change(twist_offset_deg=-1.5)
+    assert asked.model == Model(noise=NoiseModel(SelfNoiseModel("heavy")))
+    places = arc([1.905, 1.905, 1.905, 3.0], [-45.0, -0.5, 45.0, 0.0])
+    np.testing.assert_array_equal(asked.listening.observers, places)
+    assert asked.listening.surroundings == Surroundings(ground=9.0)
+
+
+def test_air_that_absorbs_is_the_air_of_the_operating_point(recorder: Any) -> None:
+    assert main(["analyze", PROPELLER, "--rpm", "4000", "--absorption", "-5", "40"]) == 0
+    (asked,) = recorder.asked
+    assert asked.point.air == Air(temperature=268.15, relative_humidity=0.4)
+    assert asked.listening.surroundings.absorption
 
 
 def test_defaults_are_hover_in_standard_air_without_observers(recorder: Any) -> None:
     assert main(["analyze", PROPELLER, "--rpm", "4000"]) == 0
-    (asked,) = recorder.calls
-    assert asked.pop("polars") is not None
-    assert asked == {
-        "rpm": 4000.0,
-        "thrust": None,
-        "speed": 0.0,
-        "density": 1.225,
-        "twist_offset_deg": 0.0,
-        "viscous": True,
-        "stall_delay": True,
-        "broadband": False,
-        "trip": "none",
-        "observers": [],
-        "surroundings": Surroundings(),
-    }
+    (asked,) = recorder.asked
+    assert recorder.polars[0] is not None
+    assert asked.to_dict() == Request(OperatingPoint(rpm=4000.0)).to_dict()
+    assert asked.point.air == Air() and len(asked.listening.observers) == 0
 
 
 def test_sections_can_be_left_out_or_stall_as_in_two_dimensions(recorder: Any) -> None:
     assert main(["analyze", PROPELLER, "--rpm", "4000", "--inviscid"]) == 0
     assert main(["analyze", PROPELLER, "--rpm", "4000", "--no-stall-delay"]) == 0
-    inviscid, no_delay = recorder.calls
-    assert inviscid["viscous"] is False and inviscid["polars"] is None
-    assert no_delay["viscous"] is True and no_delay["stall_delay"] is False
+    inviscid, no_delay = (asked.model.loads for asked in recorder.asked)
+    assert inviscid == LoadModel(viscous=False) and recorder.polars[0] is None
+    assert no_delay == LoadModel(stall_delay=False) and recorder.polars[1] is not None
 
 
-def test_polars_of_ones_own_go_before_the_catalogue(recorder: Any, tmp_path: Path) -> None:
-    lines = [" Mach = 0.000  Re = 0.100 e 6  Ncrit = 9.000", " alpha CL CD CDp CM", " --- --- ---"]
-    lines += [f"{a} {0.1 * a + 0.3:.3f} 0.0200 0.0100 -0.0500" for a in range(-10, 13)]
+def test_polars_of_ones_own_go_before_the_catalogue(
+    recorder: Any, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     file = tmp_path / "mine.txt"
-    file.write_text("\n".join(lines) + "\n")
-    assert main(["analyze", PROPELLER, "--rpm", "4000", "--polar", "e63", str(file)]) == 0
+    file.write_text(POLAR)
+    assert main(["analyze", PROPELLER, "--rpm", "4000", "--polar", "e63", str(file), "--json"]) == 0
+    said = json.loads(capsys.readouterr().out)["polars"]
     assert main(["analyze", PROPELLER, "--rpm", "4000"]) == 0
-    own, shipped = (call["polars"] for call in recorder.calls)
+    own, shipped = recorder.polars
     assert own.values.shape != shipped.values.shape
+    assert said["e63"] == str(file) and said["naca4412"] != str(file)
 
 
 @pytest.mark.parametrize(
@@ -147,11 +143,36 @@ def test_tables_say_what_is_left_out_and_fit_eighty_columns(
     assert "nan" not in output and "inf" not in output
 
 
-def test_a_twist_offset_is_said_above_the_table(
-    recorder: Any, capsys: pytest.CaptureFixture[str]
+def test_levels_of_tones_of_broadband_noise_and_of_both_stand_side_by_side(
+    recorder: Any, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    assert main(["analyze", PROPELLER, "--rpm", "4000", "--twist-offset", "-1.5"]) == 0
-    assert "Twist offset -1.5 deg" in capsys.readouterr().out
+    monkeypatch.setenv("COLUMNS", "80")
+    arguments = "--rpm 12345 --point 1.905 -45 -120.5 --broadband --trip heavy --ground 2"
+    assert main(["analyze", PROPELLER, *arguments.split()]) == 0
+    output = capsys.readouterr().out
+    # radius, elevation, azimuth; BPF, tones, thickness, loading; broadband, total; dBA
+    row = "12345.0 1.905 -45 -120.5 50.0 50.0 - 50.0 61.0 63.0 50.0 64.0".split()
+    assert row in [line.split() for line in output.splitlines()]
+    assert "Levels: hard ground 2 m below the hub, blades heavily tripped." in output
+    assert "Tones only" not in output and "…" not in output
+
+
+@pytest.mark.parametrize("command", ["analyze", "export", "sweep"])
+def test_what_was_assumed_about_a_propeller_file_is_one_line(
+    recorder: Any, capsys: pytest.CaptureFixture[str], tmp_path: Path, command: str
+) -> None:
+    file, polar = tmp_path / "mine_9x4.7_geom.txt", tmp_path / "polar.txt"
+    file.write_text("r/R c/R beta\n0.2 0.15 30\n0.6 0.2 20\n1.0 0.05 10\n")
+    polar.write_text(POLAR)
+    arguments = {
+        "analyze": ["--rpm", "4000", "--polar", "naca4412", str(polar)],
+        "export": ["--to", str(tmp_path / "mine.toml")],
+        "sweep": ["--rpm", "4000", "--out", str(tmp_path / "sweep.csv")],
+    }
+    assert main([command, str(file), *arguments[command]]) == 0
+    said = capsys.readouterr().err
+    assert said.startswith(f"propmdao {command}: warning: {file}: assumed, ")
+    assert said.count("\n") == 1
 
 
 @pytest.mark.parametrize(
@@ -171,12 +192,13 @@ def test_a_twist_offset_is_said_above_the_table(
         (f"analyze {PROPELLER} --rpm 4000 --arc", "--arc"),
         (f"analyze {PROPELLER} --rpm 4000 --arc 1.905", "at least one elevation"),
         (f"analyze {PROPELLER} --rpm 4000 --ar 1.905 0", "unrecognized arguments"),
-        (f"analyze {PROPELLER} --rpm 4000 --trip light", "--trip light is about broadband"),
+        (f"analyze {PROPELLER} --rpm 4000 --trip light", "trip 'light' is about broadband noise"),
         (f"analyze {PROPELLER} --rpm 4000 --wav a.wav", "--wav needs observers"),
         (f"analyze {PROPELLER} --rpm 4000 --figures a", "--figures needs observers"),
         (f"analyze {PROPELLER} --rpm 1:2:1 --arc 1 0 --wav a.wav", "of one operating point"),
         (f"analyze {PROPELLER} --rpm 4000 --arc 1 0 --wav a.mp3", "a.mp3: the file must end in"),
         (f"analyze {PROPELLER} --rpm 4000 --arc 1 0 --wav no/a.wav", "there is no folder no"),
+        (f"analyze {PROPELLER} --rpm 4000 --circle 2 0 65 --wav a.wav", "at most 64 observers"),
         (f"analyze {PROPELLER} --rpm 4000 --full-scale 1", "--full-scale is of a sound file"),
         (f"analyze {PROPELLER} --rpm 4000 --polar e63", "--polar e63 has no file"),
         (f"analyze {PROPELLER} --rpm 4000 --polar e63 no_such.txt", "no_such.txt"),
@@ -190,7 +212,7 @@ def test_bad_input_is_refused_in_one_line(
     recorder: Any, refused: Callable[..., str], arguments: str, message: str
 ) -> None:
     assert message in refused(*arguments.split())
-    assert recorder.calls == []
+    assert recorder.asked == []
 
 
 def test_malformed_toml_is_refused_in_one_line(
@@ -208,9 +230,19 @@ def test_keys_are_those_promised() -> None:
     assert (result.returncode, result.stderr) == (0, "")
     point = json.loads(result.stdout)
     assert list(point) == (
-        "rpm speed rho J thrust torque shaft_power CT CQ CP eta viscous converged failure trip"
-        " surroundings observers".split()
+        "propeller point change model listening polars rpm speed rho J thrust torque shaft_power"
+        " CT CQ CP eta converged failure observers".split()
     )
+    assert set(point["propeller"]) == {"name", "diameter", "n_blades", "checksum", "source"}
+    assert set(point["point"]) == {"rpm", "thrust", "speed", "air"}
+    assert set(point["point"]["air"]) == set(
+        "rho sound_speed dynamic_viscosity temperature pressure relative_humidity".split()
+    )
+    assert set(point["change"]) == {"twist_offset_deg", "chord_factor", "diameter", "n_blades"}
+    assert set(point["model"]) == {"loads", "noise", "fidelity"}
+    assert set(point["model"]["loads"]) == {"viscous", "stall_delay", "wake", "transition"}
+    assert set(point["listening"]) == {"observers", "surroundings", "groups"}
+    assert set(point["polars"]) == {"e63", "naca4412"}
     assert [observer["elevation_deg"] for observer in point["observers"]] == [-45, 0]
     for observer in point["observers"]:
         assert set(observer) == set(

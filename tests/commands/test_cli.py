@@ -50,7 +50,7 @@ def test_a_closed_pipe_ends_quietly(form: list[str]) -> None:
     os.close(reader)
     with os.fdopen(writer, "w") as pipe:
         result = subprocess.run(
-            [sys.executable, "-m", "propmdao.commands.program", "list", *form],
+            [sys.executable, "-m", "propmdao", "list", *form],
             stdout=pipe,
             stderr=subprocess.PIPE,
             text=True,
@@ -61,7 +61,7 @@ def test_a_closed_pipe_ends_quietly(form: list[str]) -> None:
 
 
 def test_version_is_that_of_the_package() -> None:
-    command = [sys.executable, "-m", "propmdao.commands.program", "--version"]
+    command = [sys.executable, "-m", "propmdao", "--version"]
     version = subprocess.run(command, capture_output=True, text=True, check=False)
     assert (version.returncode, version.stderr) == (0, "")
     assert version.stdout == f"propmdao {propmdao.__version__}\n"

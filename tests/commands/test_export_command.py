@@ -32,7 +32,7 @@ def test_a_turned_blade_says_so(tmp_path: Path) -> None:
     assert export(tmp_path / "mine.toml", "--twist-offset", "-1.5") == 0
     mine, shipped = load_propeller(tmp_path / "mine.toml"), load_propeller(PROPELLER)
     np.testing.assert_allclose(mine.beta_deg, shipped.beta_deg - 1.5)
-    assert mine.source == f"{shipped.source} Blade angle -1.5 deg everywhere."
+    assert mine.source == f"{shipped.source} Changed: blade angle -1.5 deg everywhere."
 
 
 def test_distributions_are_columns(tmp_path: Path) -> None:

@@ -23,9 +23,13 @@ def test_json_holds_the_flight_its_levels_and_their_history(
         main(["flyover", PROPELLER, *FLIGHT, "--trip", "heavy", "--json", "--out", str(out)]) == 0
     )
     result = json.loads(capsys.readouterr().out)
-    for key in "rpm speed rho J thrust torque shaft_power CT CQ CP eta converged trip".split():
-        assert key in result
-    assert result["flight"]["height"] == 20.0 and result["flight"]["air"]["temperature"] == 288.15
+    assert list(result) == (
+        "propeller point change model polars rpm speed rho J thrust torque shaft_power CT CQ CP eta"
+        " converged failure flight levels epnl pnltm epnl_failure history".split()
+    )
+    assert result["model"]["noise"]["broadband"]["trip"] == "heavy"
+    assert result["flight"]["height"] == 20.0 and result["flight"]["absorption"] is True
+    assert result["point"]["air"]["temperature"] == 288.15
     assert set(result["levels"]) == {"thickness", "loading", "broadband", "total"}
     assert result["epnl"] < result["pnltm"] and result["epnl_failure"] is None
     with out.open(newline="") as stream:

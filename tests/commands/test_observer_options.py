@@ -7,16 +7,15 @@ import argparse
 import numpy as np
 import pytest
 
-from propmdao.acoustics.kinematics.observers import hemisphere, point
+from propmdao.acoustics.kinematics.observers import directions, hemisphere
 from propmdao.commands.observer_options import (
     add_observers,
     add_surroundings,
-    observers_of,
-    surroundings_of,
+    air_of,
+    listening_of,
 )
 from propmdao.commands.options import take_negative_ranges
-from propmdao.records.air import Air
-from propmdao.records.listening import Surroundings
+from propmdao.records.listening import ObserverGroup, Surroundings
 
 
 def parse(arguments: str) -> argparse.Namespace:
@@ -42,15 +41,32 @@ def parse(arguments: str) -> argparse.Namespace:
 def test_observers_are_named_by_distance_elevation_and_azimuth(
     arguments: str, observers: list[tuple[float, float, float]]
 ) -> None:
-    found = observers_of(parse(arguments))
-    np.testing.assert_allclose(np.reshape(found, (-1, 3)), np.reshape(observers, (-1, 3)))
+    placed = listening_of(parse(arguments)).observers
+    assert placed.shape == (len(observers), 3)
+    found = np.stack(directions(placed).rounded(), axis=-1)
+    np.testing.assert_allclose(found, np.reshape(observers, (-1, 3)))
+
+
+def test_each_option_places_a_group_of_its_own() -> None:
+    """Figures and tables find the arc, and the hemisphere, by its group."""
+    arguments = "--hemisphere 5 30 --arc 2 -45 0 45 --point 1:2:1 0 0 --arc 3 0 --grid 0:4:1 0 -9"
+    listening = listening_of(parse(arguments + " --circle 2 0 6"))
+    assert listening.groups == (
+        ObserverGroup("arc", "arc", 3),
+        ObserverGroup("arc 2", "arc", 1),
+        ObserverGroup("point", "point", 2),
+        ObserverGroup("circle", "circle", 6),
+        ObserverGroup("grid", "grid", 5),
+        ObserverGroup("hemisphere", "hemisphere", 4 * 13),
+    )
+    assert len(listening.observers) == 3 + 1 + 2 + 6 + 5 + 4 * 13
+    assert listening_of(parse("")).groups == ()
 
 
 def test_a_hemisphere_is_below_the_rotor_or_below_the_aircraft() -> None:
-    """And last: figures find it there."""
-    upright = point(*np.transpose(observers_of(parse("--hemisphere 5 30 --grid 0 0 1"))))
+    upright = listening_of(parse("--hemisphere 5 30 --grid 0 0 1")).observers
     np.testing.assert_allclose(upright[1:], hemisphere(5.0, 30.0), atol=1e-8)
-    level = point(*np.transpose(observers_of(parse("--hemisphere 5 30 --level"))))
+    level = listening_of(parse("--hemisphere 5 30 --level")).observers
     ahead, left, up = level[:, 2], level[:, 1], -level[:, 0]
     np.testing.assert_allclose(
         np.stack([ahead, left, up], axis=-1), hemisphere(5.0, 30.0), atol=1e-8
@@ -59,10 +75,10 @@ def test_a_hemisphere_is_below_the_rotor_or_below_the_aircraft() -> None:
 
 def test_in_level_flight_a_grid_has_its_third_coordinate_up() -> None:
     """Ten metres below the hub, five ahead: on the side of azimuth 0."""
-    ((radius, elevation, azimuth),) = observers_of(parse("--grid 5 0 -10 --level"))
-    assert radius == pytest.approx(np.sqrt(125.0))
-    assert elevation == pytest.approx(np.degrees(np.arctan2(5.0, 10.0)))
-    assert azimuth == 0.0
+    placed = directions(listening_of(parse("--grid 5 0 -10 --level")).observers)
+    assert placed.radius == pytest.approx(np.sqrt(125.0))
+    assert placed.elevation_deg == pytest.approx(np.degrees(np.arctan2(5.0, 10.0)))
+    assert placed.azimuth_deg == 0.0
 
 
 @pytest.mark.parametrize(
@@ -71,13 +87,28 @@ def test_in_level_flight_a_grid_has_its_third_coordinate_up() -> None:
         ("", Surroundings()),
         ("--ground 2.5", Surroundings(2.5)),
         ("--ground flush --level", Surroundings("flush", True)),
-        ("--absorption", Surroundings(air=Air())),
-        ("--absorption -5 40", Surroundings(air=Air(268.15, 0.4))),
-        ("--absorption 20 50 9e4", Surroundings(air=Air(293.15, 0.5, 9e4))),
+        ("--absorption", Surroundings(absorption=True)),
+        ("--absorption -5 40 --ground 1", Surroundings(1.0, absorption=True)),
     ],
 )
 def test_ground_and_air(arguments: str, surroundings: Surroundings) -> None:
-    assert surroundings_of(parse(arguments)) == surroundings
+    assert listening_of(parse(arguments)).surroundings == surroundings
+
+
+@pytest.mark.parametrize(
+    ("arguments", "air"),
+    [
+        ("", {}),
+        ("--absorption", {}),
+        ("--absorption -5 40", {"temperature": 268.15, "relative_humidity": 0.4}),
+        (
+            "--absorption 20 50 9e4",
+            {"temperature": 293.15, "relative_humidity": 0.5, "pressure": 9e4},
+        ),
+    ],
+)
+def test_air_that_absorbs(arguments: str, air: dict[str, float]) -> None:
+    assert air_of(parse(arguments)) == air
 
 
 @pytest.mark.parametrize(
@@ -95,7 +126,7 @@ def test_ground_and_air(arguments: str, surroundings: Surroundings) -> None:
 )
 def test_observers_that_are_none(arguments: str, message: str) -> None:
     with pytest.raises(ValueError, match=message):
-        observers_of(parse(arguments))
+        listening_of(parse(arguments))
 
 
 @pytest.mark.parametrize(
@@ -110,4 +141,6 @@ def test_observers_that_are_none(arguments: str, message: str) -> None:
 )
 def test_surroundings_that_are_none(arguments: str, message: str) -> None:
     with pytest.raises(ValueError, match=message):
-        surroundings_of(parse(arguments))
+        options = parse(arguments)
+        listening_of(options)
+        air_of(options)

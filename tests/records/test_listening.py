@@ -26,5 +26,20 @@ def test_what_is_no_group_or_no_position():
         ObserverGroup("around", "sphere", 3)  # type: ignore[arg-type]
     with pytest.raises(ValueError, match="group of observers 'nobody' needs at least 1; it has 0"):
         ObserverGroup("nobody", "arc", 0)
-    with pytest.raises(ValueError, match=r"observers must be an \(n, 3\) array .* it is \(3,\)"):
-        Listening(np.zeros(3))
+
+
+@pytest.mark.parametrize(
+    "observers",
+    [np.zeros(3), np.zeros((4, 2)), [(1.905, -45.0)], [(1.905, -45.0), (1.905, 0.0)], 1.905],
+)
+def test_radius_and_elevation_are_refused_with_what_makes_positions(observers):
+    with pytest.raises(
+        ValueError, match=r"\(n, 3\) array .* propmdao.arc\(radius, elevation_deg\)"
+    ) as e:
+        Listening(observers)
+    assert str(np.shape(observers)) in str(e.value) and "\n" not in str(e.value)
+
+
+def test_a_position_that_is_not_finite_is_named():
+    with pytest.raises(ValueError, match="observer 2 must be at a finite position"):
+        Listening([(1.0, 0.0, 0.0), (np.nan, 0.0, 1.0)])

@@ -41,7 +41,7 @@ class RotorLoads:
         Sections of blade 1, and their flow, lift and drag.
     converged : bool
         Whether thrust and induced velocity agree with momentum theory, and lattice and polars on
-        the lift of every section, which is one that the polar can have; `failure` says what does not.
+        the lift of every section, one that the polar can have; `failure` says what does not.
     """
 
     thrust: Array

@@ -9,42 +9,54 @@ from typing import Any
 
 import pytest
 
+from propmdao.analysis.request import Request
 from propmdao.formats.propellers import load_propeller
 from propmdao.propeller.description import Propeller
 
 
-class Analyzer:
-    """In place of `propmdao.analysis.single_point`: thrust is rpm squared, 13 m/s is too fast."""
+class Answer:
+    """In place of `propmdao.Analysis`: thrust is rpm squared, all levels are the same."""
 
-    def __init__(self) -> None:
-        self.calls: list[tuple[Propeller, dict[str, Any]]] = []
-
-    def analyze(self, propeller: Propeller, **asked: Any) -> Analyzer:
-        self.calls.append((propeller, asked))
-        if asked["speed"] == 11.0:
-            warnings.warn("Reynolds numbers below\nthe tables", stacklevel=2)
-        if asked["speed"] == 13.0:
-            raise ValueError("thrust 1 N is out of reach")
-        if asked["speed"] == 14.0:
-            raise FloatingPointError("underflow")
-        return self
+    def __init__(self, request: Request) -> None:
+        self.request = request
 
     def to_dict(self) -> dict[str, Any]:
-        _, asked = self.calls[-1]
-        rpm = 4000.0 if asked["rpm"] is None else asked["rpm"]
+        point = self.request.point
+        rpm = 4000.0 if point.rpm is None else point.rpm
         levels = {f"{name}_db": 50.0 for name in ("spl_bpf", "oaspl", "oaspl_thickness")}
+        levels |= {"oaspl_loading_db": 40.0, "oaspl_dba": 30.0}
+        if self.request.model.noise.broadband is not None:
+            levels |= {"oaspl_broadband_db": 45.0, "oaspl_broadband_dba": 43.0}
+            levels |= {"oaspl_total_db": 51.0, "oaspl_total_dba": 43.2}
         return {
+            **self.request.to_dict(),
             **dict.fromkeys("J torque shaft_power CT CQ CP eta".split(), 0.5),
             "rpm": rpm,
-            "speed": asked["speed"],
-            "rho": asked["density"],
+            "speed": point.speed,
+            "rho": point.air.density,
             "thrust": rpm**2,
             "converged": True,
-            "observers": [
-                {**levels, "oaspl_loading_db": 40.0, "oaspl_dba": 30.0, "oaspl_broadband_db": 45.0}
-                for _ in asked["observers"]
-            ],
+            "failure": None,
+            "observers": [dict(levels) for _ in self.request.listening.observers],
         }
+
+
+class Analyzer:
+    """In place of `propmdao.analysis.single_point`: keeps what was asked; 13 m/s is too fast."""
+
+    def __init__(self) -> None:
+        self.asked: list[Request] = []
+
+    def analyze(self, propeller: Propeller, **asked: Any) -> Answer:
+        request = Request.of(**asked)
+        self.asked.append(request)
+        if request.point.speed == 11.0:
+            warnings.warn("Reynolds numbers below\nthe tables", stacklevel=2)
+        if request.point.speed == 13.0:
+            raise ValueError("thrust 1 N is out of reach")
+        if request.point.speed == 14.0:
+            raise FloatingPointError("underflow")
+        return Answer(request)
 
 
 @pytest.fixture
@@ -53,6 +65,12 @@ def analyzer(monkeypatch: pytest.MonkeyPatch) -> Analyzer:
     module = types.SimpleNamespace(analyze=analyzer.analyze)
     monkeypatch.setitem(sys.modules, "propmdao.analysis.single_point", module)
     return analyzer
+
+
+@pytest.fixture
+def answer() -> type[Answer]:
+    """Class of the answers, to change what they say."""
+    return Answer
 
 
 @pytest.fixture

@@ -13,10 +13,17 @@ from typing import Any
 import numpy as np
 import pytest
 
-from propmdao.acoustics.kinematics.observers import arc
+from propmdao.acoustics.kinematics.observers import arc, point
 from propmdao.analysis.sweeps import grid, sweep
+from propmdao.propeller.changes import Change
 from propmdao.propeller.description import Propeller
+from propmdao.records.air import Air
+from propmdao.records.fidelity import Fidelity
 from propmdao.records.listening import Surroundings
+from propmdao.records.models import Model, SelfNoiseModel
+from propmdao.records.quantities import BROADBAND_LEVELS, LEVELS
+from propmdao.records.states import OperatingPoint
+from propmdao.records.wake_law import WakeLaw
 
 PROPELLER = "apcsf_11x4.7"
 
@@ -29,22 +36,84 @@ def rows_of(path: Path) -> list[dict[str, str]]:
 def test_a_point_is_passed_on_and_its_results_are_a_row(
     analyzer: Any, propeller: Propeller, tmp_path: Path
 ) -> None:
-    point = {"rpm": 3000.0, "speed": 8.0, "rho": 1.1, "twist_offset_deg": 1.5}
+    flow = {"rpm": 3000.0, "speed": 8.0, "rho": 1.1, "twist_offset_deg": 1.5}
     blade = {"chord_factor": 1.1, "diameter": 0.3, "n_blades": 3.0}
     path = tmp_path / "sweep.csv"
     new, failures = sweep(
-        propeller, [point | blade], path, observers=arc([1.905, 2.0], [-45.0, 0.0])
+        propeller, [flow | blade], path, observers=arc([1.905, 2.0], [-45.0, 0.0])
     )
     assert (new, failures) == (1, [])
-    (changed, asked), (row,) = analyzer.calls[0], rows_of(path)
-    assert (changed.diameter, changed.n_blades) == (0.3, 3)
-    np.testing.assert_allclose(changed.c_over_R, 1.1 * propeller.c_over_R)
-    assert asked["rpm"] == 3000.0 and asked["thrust"] is None and asked["speed"] == 8.0
-    assert asked["density"] == 1.1 and asked["twist_offset_deg"] == 1.5
+    (asked,), (row,) = analyzer.asked, rows_of(path)
+    assert asked.point == OperatingPoint(rpm=3000.0, speed=8.0, air=Air(density=1.1))
+    assert asked.change == Change(1.5, 1.1, 0.3, 3)
+    assert asked.model == Model()
     assert row["propeller"] == propeller.name and row["n_blades"] == "3"
     assert float(row["thrust"]) == 9e6 and row["converged"] == "True"
     assert row["oaspl_db@1.905m-45deg"] == row["spl_bpf_db@2m+0deg"] == "50.0"
-    assert asked["viscous"] is True and row["viscous"] == "True"
+    assert (row["rho"], row["chord_factor"], row["diameter"]) == ("1.1", "1.1", "0.3")
+
+
+def test_rows_begin_with_the_point_and_all_that_was_asked_of_it(
+    analyzer: Any, propeller: Propeller, tmp_path: Path
+) -> None:
+    path = tmp_path / "sweep.csv"
+    sweep(propeller, [{"rpm": 3000.0}], path)
+    (row,) = rows_of(path)
+    asked = "propeller blade rpm speed rho twist_offset_deg chord_factor diameter n_blades"
+    asked += " viscous stall_delay broadband trip surroundings settings"
+    assert set(list(row)[:15]) == set(asked.split())
+    said = {name: row[name] for name in list(row)[9:15]}
+    assert said == {
+        "viscous": "True",
+        "stall_delay": "True",
+        "broadband": "False",
+        "trip": "none",
+        "surroundings": "free field",
+        "settings": "default",
+    }
+    assert analyzer.asked[0].change == Change()  # the blade as it is described
+
+
+def test_levels_of_tones_of_noise_and_of_both_have_columns(
+    analyzer: Any, propeller: Propeller, tmp_path: Path
+) -> None:
+    places = arc(1.905, [-45.0])
+    sweep(propeller, [{"rpm": 3000.0}], tmp_path / "tones.csv", observers=places)
+    sweep(propeller, [{"rpm": 3000.0}], tmp_path / "both.csv", observers=places, broadband=True)
+    tones, both = (
+        {name.removesuffix("@1.905m-45deg"): cell for name, cell in row.items() if "@" in name}
+        for name in ("tones", "both")
+        for row in rows_of(tmp_path / f"{name}.csv")
+    )
+    assert tones.keys() == LEVELS.keys()
+    assert both.keys() == LEVELS.keys() | BROADBAND_LEVELS.keys()
+    assert (tones["oaspl_db"], both["oaspl_db"], both["oaspl_total_db"]) == ("50.0", "50.0", "51.0")
+
+
+def test_what_has_no_column_of_its_own_is_in_the_settings(
+    analyzer: Any, propeller: Propeller, tmp_path: Path
+) -> None:
+    """Rows of other settings are other points, in the same table."""
+    path, points = tmp_path / "sweep.csv", [{"rpm": 3000.0}]
+    sweep(propeller, points, path)
+    others: list[dict[str, Any]] = [
+        {"n_crit": 9.0},
+        {"fidelity": Fidelity(n_spanwise=12)},
+        {"sound_speed": 330.0, "temperature": 270.0},
+        {"wake": WakeLaw(inside=1.5)},
+    ]
+    for asked in others:
+        assert sweep(propeller, points, path, **asked) == (1, [])
+    assert [row["settings"] for row in rows_of(path)] == [
+        "default",
+        "loads.transition.n_crit=9.0",
+        "fidelity.n_spanwise=12",
+        "sound_speed=330.0 temperature=270.0",
+        "loads.wake.inside=1.5",
+    ]
+    assert sweep(propeller, points, path, viscous=False, stall_delay=False) == (1, [])
+    last = rows_of(path)[-1]
+    assert (last["viscous"], last["stall_delay"], last["settings"]) == ("False", "False", "default")
 
 
 def test_warnings_stand_in_the_row_that_they_are_about(
@@ -60,7 +129,7 @@ def test_inviscid_points_are_other_points(
 ) -> None:
     for viscous in (True, False):
         sweep(propeller, [{"rpm": 3000.0}], tmp_path / "sweep.csv", viscous=viscous)
-    assert [asked["viscous"] for _, asked in analyzer.calls] == [True, False]
+    assert [asked.model.loads.viscous for asked in analyzer.asked] == [True, False]
     assert len(rows_of(tmp_path / "sweep.csv")) == 2
 
 
@@ -69,14 +138,15 @@ def test_noise_is_heard_in_the_same_way_at_all_points(
 ) -> None:
     path, points = tmp_path / "sweep.csv", [{"rpm": 3000.0}, {"rpm": 4000.0}]
     over_ground = Surroundings(ground=2.0)
-    places = [(1.905, -20.0, 0.0), (1.905, -20.0, 90.0)]
+    places = point(1.905, -20.0, [0.0, 90.0])
     sweep(
         propeller, points, path, observers=places, broadband=True, trip="heavy",
         surroundings=over_ground,
     )  # fmt: skip
-    for _, asked in analyzer.calls:
-        assert asked["broadband"] is True and asked["trip"] == "heavy"
-        assert asked["surroundings"] == over_ground and asked["observers"] == places
+    for asked in analyzer.asked:
+        assert asked.model.noise.broadband == SelfNoiseModel("heavy")
+        assert asked.listening.surroundings == over_ground
+        np.testing.assert_array_equal(asked.listening.observers, places)
     row = rows_of(path)[1]
     assert row["surroundings"] == "hard ground 2 m below the hub" and row["trip"] == "heavy"
     assert "oaspl_db@1.905m-20deg" in row
@@ -100,12 +170,14 @@ def test_failed_points_are_rows_with_the_reason(
 
 
 def test_a_point_that_does_not_converge_has_failed_and_keeps_its_numbers(
-    analyzer: Any, propeller: Propeller, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    analyzer: Any,
+    answer: Any,
+    propeller: Propeller,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    to_dict = type(analyzer).to_dict
-    monkeypatch.setattr(
-        type(analyzer), "to_dict", lambda self: to_dict(self) | {"converged": False}
-    )
+    to_dict = answer.to_dict
+    monkeypatch.setattr(answer, "to_dict", lambda self: to_dict(self) | {"converged": False})
     _, failures = sweep(propeller, [{"rpm": 3000.0}], tmp_path / "sweep.csv")
     assert failures == ["the solution has not converged"]
     (row,) = rows_of(tmp_path / "sweep.csv")
@@ -113,26 +185,30 @@ def test_a_point_that_does_not_converge_has_failed_and_keeps_its_numbers(
 
 
 def test_a_sweep_goes_on_where_it_was_stopped_and_takes_more_points(
-    analyzer: Any, propeller: Propeller, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    analyzer: Any,
+    answer: Any,
+    propeller: Propeller,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     points = [{"rpm": rpm} for rpm in (3000.0, 4000.0, 5000.0, 6000.0)]
     uninterrupted, path = tmp_path / "uninterrupted.csv", tmp_path / "sweep.csv"
     sweep(propeller, points, uninterrupted)
-    to_dict = type(analyzer).to_dict
+    to_dict = answer.to_dict
 
     def interrupted(self: Any) -> dict[str, Any]:
-        if self.calls[-1][1]["rpm"] == 5000.0:
+        if self.request.point.rpm == 5000.0:
             raise KeyboardInterrupt
         return to_dict(self)
 
-    monkeypatch.setattr(type(analyzer), "to_dict", interrupted)
+    monkeypatch.setattr(answer, "to_dict", interrupted)
     with pytest.raises(KeyboardInterrupt):
         sweep(propeller, points, path)
     assert len(rows_of(path)) == 2
-    monkeypatch.setattr(type(analyzer), "to_dict", to_dict)
-    analyzer.calls.clear()
+    monkeypatch.setattr(answer, "to_dict", to_dict)
+    analyzer.asked.clear()
     assert sweep(propeller, points, path) == (2, [])
-    assert [asked["rpm"] for _, asked in analyzer.calls] == [5000.0, 6000.0]
+    assert [asked.point.rpm for asked in analyzer.asked] == [5000.0, 6000.0]
     assert path.read_bytes() == uninterrupted.read_bytes()
     assert sweep(propeller, [*points, {"rpm": 7000.0}], path) == (1, [])
 
@@ -173,7 +249,7 @@ def test_parquet_is_written_beside_csv(analyzer: Any, propeller: Propeller, tmp_
     assert parquet.read_table(tmp_path / "sweep.parquet")["rpm"].to_pylist() == [3000.0, 4000.0]
 
 
-WORDS = ("propeller", "blade", "status", "reason", "warnings", "trip", "surroundings")
+WORDS = ("propeller", "blade", "status", "reason", "warnings", "trip", "surroundings", "settings")
 
 
 @pytest.mark.slow
@@ -201,7 +277,7 @@ def test_a_killed_sweep_resumes_to_the_same_table(tmp_path: Path) -> None:
     sweep_of = [
         sys.executable,
         "-m",
-        "propmdao.commands.program",
+        "propmdao",
         "sweep",
         PROPELLER,
         "--out",

@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+import operator
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 
+from propmdao.acoustics.kinematics.observers import arc
 from propmdao.analysis.sweeps import latin_hypercube
 from propmdao.commands.program import main
+from propmdao.propeller.changes import Change
 
 PROPELLER = "apcsf_11x4.7"
 
@@ -18,7 +22,8 @@ def command(*arguments: str) -> int:
 
 
 def asked_for(analyzer: Any, *names: str) -> list[tuple[float, ...]]:
-    return [tuple(asked[name] for name in names) for _, asked in analyzer.calls]
+    """Values by their dotted path in the request, of every point."""
+    return [operator.attrgetter(*names)(request) for request in analyzer.asked]
 
 
 def test_command_of_a_grid(
@@ -27,10 +32,10 @@ def test_command_of_a_grid(
     out = str(tmp_path / "sweep.csv")
     arguments = "--rpm 3000:4000:500 --rpm 3500 --speed 0:12:6 --speed 13 --arc 1.905 -45 0"
     assert command(*arguments.split(), "--out", out) == 0
-    assert asked_for(analyzer, "rpm", "speed") == [
+    assert asked_for(analyzer, "point.rpm", "point.speed") == [
         (rpm, speed) for rpm in (3000.0, 3500.0, 4000.0) for speed in (0.0, 6.0, 12.0, 13.0)
     ]
-    assert analyzer.calls[0][1]["observers"] == [(1.905, -45.0, 0.0), (1.905, 0.0, 0.0)]
+    np.testing.assert_allclose(analyzer.asked[0].listening.observers, arc(1.905, [-45.0, 0.0]))
     printed = capsys.readouterr().out
     assert printed.startswith(f"points: 12, 12 new, 3 failed; {out}\n")
     assert "failed: thrust 1 N is out of reach" in printed
@@ -41,10 +46,10 @@ def test_command_of_a_grid(
 def test_negative_ranges_and_every_option(analyzer: Any, tmp_path: Path) -> None:
     arguments = "--thrust 1.5 --rho 1.1 --twist-offset -2:0:1 --chord-factor 1.1 --diameter 0.3"
     assert command(*arguments.split(), "--blades", "3", "--out", str(tmp_path / "s.csv")) == 0
-    assert asked_for(analyzer, "thrust", "density", "twist_offset_deg") == [
+    assert asked_for(analyzer, "point.thrust", "point.air.density", "change.twist_offset_deg") == [
         (1.5, 1.1, offset) for offset in (-2.0, -1.0, 0.0)
     ]
-    assert analyzer.calls[0][0].n_blades == 3
+    assert analyzer.asked[0].change == Change(-2.0, 1.1, 0.3, 3)
 
 
 def test_drawn_points_and_fixed_values(analyzer: Any, tmp_path: Path) -> None:
@@ -56,14 +61,14 @@ def test_drawn_points_and_fixed_values(analyzer: Any, tmp_path: Path) -> None:
     assert command(*fixed.split(), "--out", str(tmp_path / "s.csv")) == 0
     drawn = latin_hypercube({"rpm": (3000.0, 6000.0), "twist_offset_deg": (-2.0, 2.0)}, 10, 2)
     expected = [(point["rpm"], point["twist_offset_deg"], 8.0) for point in drawn]
-    assert asked_for(analyzer, "rpm", "twist_offset_deg", "speed") == expected
+    assert asked_for(analyzer, "point.rpm", "change.twist_offset_deg", "point.speed") == expected
 
 
 def test_points_of_a_file_with_other_values(analyzer: Any, tmp_path: Path) -> None:
     (tmp_path / "points.csv").write_text("rpm,speed\n3000,1\n4000,2\n")
     arguments = ["--points", str(tmp_path / "points.csv"), "--out", str(tmp_path / "s.csv")]
     assert command(*arguments, "--rho", "1.0", "--rho", "1.2") == 0
-    assert asked_for(analyzer, "rpm", "speed", "density") == [
+    assert asked_for(analyzer, "point.rpm", "point.speed", "point.air.density") == [
         (3000.0, 1.0, 1.0), (3000.0, 1.0, 1.2), (4000.0, 2.0, 1.0), (4000.0, 2.0, 1.2)
     ]  # fmt: skip
 
@@ -75,7 +80,7 @@ def test_points_of_a_file_with_other_values(analyzer: Any, tmp_path: Path) -> No
         ("--rpm 3000:6000", "rpm: '3000:6000' is not a range START:STOP:STEP"),
         ("--rpm fast", "rpm: 'fast' is not a number"),
         ("--rpm 3000 --arc 1.905", "at least one elevation"),
-        ("--rpm 3000 --trip light", "--trip light is about broadband noise"),
+        ("--rpm 3000 --trip light", "trip 'light' is about broadband noise"),
         ("--rpm 3000 --ground 0", "height above ground must be positive"),
         ("--rpm 3000 --workers 0", "--workers must be 1 or more; it is 0"),
         ("--rpm 3000 --samples 5", "--samples needs a range LOWEST:HIGHEST"),

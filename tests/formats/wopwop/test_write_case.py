@@ -108,7 +108,7 @@ def written_and_run(folder, rotors, surfaces, velocity=(0.0, 0.0, 0.0), flight=(
         np.testing.assert_allclose(result.pressure.time[0], times, atol=1e-12)
         np.testing.assert_allclose(result.pressure.position[0, 0], observers.position[i])
         for name in ("thickness", "loading"):
-            expected = getattr(own, name)[i]
+            expected = own.parts[name][i]
             # single precision of the files
             np.testing.assert_allclose(
                 getattr(result.pressure, name)[0], expected, atol=1e-4 * np.ptp(expected)

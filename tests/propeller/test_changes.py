@@ -1,0 +1,61 @@
+"""Changes of a described blade: the described one stays, the changed one says so."""
+
+from __future__ import annotations
+
+import dataclasses
+
+import numpy as np
+import pytest
+
+from propmdao.formats.propellers import load_propeller
+from propmdao.propeller.changes import Change
+from propmdao.propeller.checks import PropellerError
+from propmdao.propeller.identity import checksum
+
+PROPELLER = load_propeller("apcsf_11x4.7")
+
+
+def test_nothing_is_changed_by_default():
+    assert Change().applied_to(PROPELLER) is PROPELLER
+    assert str(Change()) == ""
+
+
+def test_each_change_does_what_it_says_and_nothing_else():
+    change = Change(twist_offset_deg=-1.5, chord_factor=1.1, diameter=0.3, n_blades=3)
+    changed = change.applied_to(PROPELLER)
+    np.testing.assert_allclose(changed.beta_deg, PROPELLER.beta_deg - 1.5, rtol=1e-14)
+    np.testing.assert_allclose(changed.c_over_R, 1.1 * PROPELLER.c_over_R, rtol=1e-14)
+    assert (changed.diameter, changed.n_blades) == (0.3, 3)
+    others = {field.name for field in dataclasses.fields(PROPELLER)}
+    for name in others - {"beta_deg", "c_over_R", "diameter", "n_blades", "source"}:
+        np.testing.assert_equal(getattr(changed, name), getattr(PROPELLER, name))
+
+
+def test_the_source_of_a_changed_blade_says_what_was_changed():
+    change = Change(twist_offset_deg=-1.5, chord_factor=1.1, diameter=0.3, n_blades=3)
+    said = "blade angle -1.5 deg everywhere, chord times 1.1, diameter 0.3 m, 3 blades"
+    assert str(change) == said
+    assert change.applied_to(PROPELLER).source == f"{PROPELLER.source} Changed: {said}."
+    sourceless = dataclasses.replace(PROPELLER, source="")
+    assert Change(n_blades=3).applied_to(sourceless).source == "Changed: 3 blades."
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        (Change(chord_factor=0.0), "c_over_R must be positive"),
+        (Change(diameter=-0.3), "diameter must be positive"),
+        (Change(n_blades=0), "n_blades must be at least 1; it is 0"),
+        (Change(twist_offset_deg=float("nan")), "beta_deg must be"),
+    ],
+)
+def test_what_no_blade_can_be_is_refused_as_in_a_description(change, message):
+    with pytest.raises(PropellerError, match=message) as error:
+        change.applied_to(PROPELLER)
+    assert "\n" not in str(error.value)
+
+
+def test_the_checksum_is_that_of_the_numbers():
+    assert checksum(load_propeller("apcsf_11x4.7")) == checksum(PROPELLER)
+    assert checksum(Change(twist_offset_deg=1e-9).applied_to(PROPELLER)) != checksum(PROPELLER)
+    assert len(checksum(PROPELLER)) == 8 and int(checksum(PROPELLER), 16) >= 0
