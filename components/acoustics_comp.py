@@ -4,16 +4,19 @@ from __future__ import annotations
 
 from typing import Any
 
-import numpy as np
-
 from propmdao.acoustics.levels.decibels import mean_square, oaspl_db, spl_db
 from propmdao.acoustics.levels.weighting import oaspl_dba
 from propmdao.acoustics.sources.formulation1a import tones
 from propmdao.components.bases.array_function import Arrays
 from propmdao.components.bases.nodes_comp import STATIC, NodesComp
-from propmdao.components.inputs.noise_inputs import add_noise_inputs, check_rotor, noise_state
+from propmdao.components.inputs.model_options import declare_model
+from propmdao.components.inputs.noise_inputs import (
+    add_noise_inputs,
+    check_rotor,
+    declare_observers,
+    noise_state,
+)
 from propmdao.geometry.surface import surface_panels
-from propmdao.records.fidelity import Fidelity
 from propmdao.records.loads import PointLoads
 from propmdao.records.quantities import LEVELS
 
@@ -35,9 +38,9 @@ class AcousticsComp(NodesComp):
     speed : float
         Axial flight speed, ``m/s``.
     density, sound_speed : float
-        Of the undisturbed air, ``kg/m**3``, ``m/s``.
+        Density of the undisturbed air and its speed of sound, ``kg/m**3``, ``m/s``.
     observer_position : (n_observers, 3) array
-        From the rotor centre, +z toward thrust, ``m``.
+        Positions from the rotor centre, +z toward thrust, ``m``.
 
     Outputs
     -------
@@ -50,9 +53,9 @@ class AcousticsComp(NodesComp):
     oaspl_dba : (n_observers,) array
         A-weighted overall level of the tones, dBA; broadband noise is `BroadbandComp`'s.
     mean_square_pressure : (n_observers, n_harmonics) array
-        Of each tone, ``Pa**2``; add these for rotors that turn independently.
+        Mean square of each tone, ``Pa**2``; add these for rotors that turn independently.
     frequency : (n_harmonics,) array
-        Of the tones, ``Hz``.
+        Frequencies of the tones, ``Hz``.
 
     Options
     -------
@@ -63,34 +66,36 @@ class AcousticsComp(NodesComp):
     n_loads : int
         Number of point forces.
     observers : (n_observers, 3) array
-        Initial `observer_position` [m]; `propmdao.acoustics.kinematics.observers.arc` makes one.
+        Initial `observer_position` [m]; `propmdao.arc` makes positions.
     fidelity : Fidelity
         Size of the surface mesh and number of harmonics.
 
     Raises
     ------
     om.AnalysisError
-        When the blade tip is not slower than sound, or an observer not outside the rotor, with the
-        node where there are several.
+        If the blade tip is not slower than sound, or an observer not outside the rotor; with
+        `num_nodes` the message has the node.
+    ValueError
+        If `observers` are no positions.
     """
 
     def initialize(self) -> None:
         super().initialize()
-        self.options.declare("n_blades", types=int, desc="Number of blades.")
-        self.options.declare("n_loads", types=int, desc="Number of point forces.")
-        self.options.declare("observers", types=np.ndarray, desc="Initial positions [m].")
-        self.options.declare("fidelity", Fidelity(), types=Fidelity, desc="Mesh and harmonics.")
+        self.options.declare("n_blades", types=int, desc="number of equally spaced blades")
+        self.options.declare("n_loads", types=int, desc="number of point forces of a blade")
+        declare_observers(self.options)
+        declare_model(self.options, ["fidelity"])
 
     def setup(self) -> None:
-        fidelity, observers = self.options["fidelity"], self.options["observers"]
-        n_observers, n_loads = len(observers), self.options["n_loads"]
+        fidelity, n_loads = self.options["fidelity"], self.options["n_loads"]
+        n_observers = len(self.options["observers"])
         surface = (fidelity.n_contour, fidelity.n_surface_span, 3)
         self.add_input("surface_nodes", shape=surface, units="m", tags=STATIC)
         self.add_point_input("load_position", shape=(n_loads, 3), units="m")
         self.add_point_input(
             "load_force", shape=(n_loads, 3), units="N", desc="Force on the fluid."
         )
-        add_noise_inputs(self, observers)
+        add_noise_inputs(self)
         for quantity in LEVELS.values():
             self.add_point_output(quantity.variable, shape=(n_observers,), desc=quantity.meaning)
         self.add_point_output(

@@ -44,68 +44,72 @@ class AerodynamicsComp(NodesComp, RootComponent):
     lattice_nodes : (n_chordwise + 1, n_spanwise + 1, 3) array
         Corner points of the lattice of blade 1, ``m``.
     diameter : float
-        Of the propeller that the lattice is one of, ``m``.
+        Diameter from tip to tip, ``m``.
     rpm : float
-        Rotation speed, ``rpm``; where it is exactly 0, every output is 0.
+        Rotation speed, ``rpm``; at exactly 0 every output is 0.
     speed : float
         Axial flight speed, 0 is hover, ``m/s``.
     density : float
-        Air density, ``kg/m**3``.
+        Density of the air, ``kg/m**3``.
     section_polars : (n_spanwise, 3, n_re, n_alpha) array
-        With option `polars`: of `GeometryComp`.
+        Polars of the sections in the middle of the strips, as `GeometryComp` gives them; an input
+        if there is the option `polars`.
     sound_speed : float
-        With option `polars`: of the air, ``m/s``.
+        Speed of sound, ``m/s``; an input if there is the option `polars`.
 
     Outputs
     -------
     thrust, torque, shaft_power : float
-        Of all blades, ``N``, ``N*m``, ``W``.
+        Thrust, shaft torque and shaft power of all blades, ``N``, ``N*m``, ``W``.
     efficiency : float
         Thrust times speed over shaft power, 0 in hover.
     J, CT, CQ, CP : float
         Advance ratio V / (n D) and coefficients per rho n^2 D^4, rho n^2 D^5, rho n^3 D^5, with n
         in revolutions per second.
     circulation : (n_chordwise, n_spanwise) array
-        Of the vortex rings of a blade, ``m**2/s``.
+        Circulation of the vortex rings of a blade, ``m**2/s``.
     load_position, load_force : (n_loads, 3) arrays
         Point forces of blade 1 ON THE FLUID, ``m``, ``N``; `n_loads` of the module counts them.
     section_speed : (n_spanwise,) array
         Speed of the air relative to the sections in the middle of the strips, ``m/s``.
     section_lift_coefficient : (n_spanwise,) array
-        Their lift coefficients; without polars those of the lattice.
+        Lift coefficients of the sections; without polars those of the lattice.
 
     Options
     -------
     num_nodes : int or None
         Number of operating points; None is a single one, with the shapes above.
     loads : bool
-        Whether there are the outputs that are arrays, `circulation` and those below it. Without
-        them derivatives are cheap where many are asked for, as missions do.
+        True (default): the loads along the blade, `circulation` and those below it, are outputs.
+        Without them derivatives are cheap where many are asked for, as missions do.
     n_blades : int
         Number of equally spaced blades.
     fidelity : Fidelity
-        Numbers of panels.
+        Numbers of panels and wake nodes.
     polars : SectionPolars or None
-        Whose Reynolds numbers and angles `section_polars` has; None for inviscid flow.
+        Polars that have the Reynolds numbers and angles of `section_polars`; None (default) for
+        inviscid flow.
     stall_delay : bool
-        Whether rotation delays the stall of the sections.
+        True (default): rotation delays the stall of the sections.
+    wake : WakeLaw
+        Law by which the prescribed wake moves.
 
     Raises
     ------
     om.AnalysisError
-        When the diameter is not positive, or the solution does not converge, with the reason and,
-        where there are several, the node.
+        If the diameter is not positive, or the solution does not converge; the message has the
+        reason and, with `num_nodes`, the node.
     """
 
     def initialize(self) -> None:
         super().initialize()
-        self.options.declare("loads", True, types=bool, desc="Whether they are outputs.")
+        self.options.declare("loads", True, types=bool, desc="loads are outputs")
         declare_rotor(self.options)
 
     def setup(self) -> None:
         fidelity = self.options["fidelity"]
         nc, ns = fidelity.n_chordwise, fidelity.n_spanwise
-        self.constants = add_rotor_inputs(self)
+        self.constants = self.search_constants = add_rotor_inputs(self)
         self._add_rotation_speed()
         for name in ("thrust", "torque", "shaft_power", "eta", "J", "CT", "CQ", "CP"):
             quantity = RESULTS[name]
@@ -145,8 +149,11 @@ class AerodynamicsComp(NodesComp, RootComponent):
 def _steady(inputs: Arrays, constants: RotorConstants, static: int) -> Arrays:
     case = rotor_at(inputs, constants, static, inputs["rpm"][0] * RAD_PER_S)
     loads = axial.solve(case)
-    found = {"induced_velocity": loads.induced_velocity[None], "loads": loads}
-    return {**loads_outputs(loads, case.state, inputs), **found}
+    return {
+        **loads_outputs(loads, case.state, inputs),
+        "induced_velocity": loads.induced_velocity[None],
+        "loads": loads,
+    }
 
 
 def _at_root(inputs: Arrays, constants: RotorConstants, static: int) -> Arrays:

@@ -16,12 +16,16 @@ from propmdao.aerodynamics.lattice.strips import blade_strips
 from propmdao.analysis.self_noise import BANDS_HZ, self_noise, strip_flow
 from propmdao.components.bases.array_function import Arrays
 from propmdao.components.bases.nodes_comp import STATIC, NodesComp
-from propmdao.components.inputs.model_options import declare_trip
-from propmdao.components.inputs.noise_inputs import add_noise_inputs, check_rotor, noise_state
+from propmdao.components.inputs.model_options import declare_model
+from propmdao.components.inputs.noise_inputs import (
+    add_noise_inputs,
+    check_rotor,
+    declare_observers,
+    noise_state,
+)
 from propmdao.geometry.blade import Blade
 from propmdao.geometry.lattice import strip_interpolation
 from propmdao.propeller.description import Propeller
-from propmdao.records.fidelity import Fidelity
 from propmdao.records.models import SelfNoiseModel
 from propmdao.records.quantities import BROADBAND_LEVELS
 
@@ -43,25 +47,26 @@ class BroadbandComp(NodesComp):
     section_speed : (n_spanwise,) array
         Speed of the air relative to the sections, ``m/s``.
     section_lift_coefficient : (n_spanwise,) array
-        Their lift coefficients, which tell the angle from zero lift.
+        Lift coefficients of the sections, which tell the angle from zero lift.
     thickness_over_chord : (n_stations,) array
-        Maximum thickness at the propeller's stations; with the propeller's section shapes, for the
-        trailing edge.
+        Maximum thickness over chord at the propeller's stations. It and the propeller's section
+        shapes give the trailing edge.
     rpm : float
         Rotation speed, ``rpm``.
     speed : float
         Axial flight speed, ``m/s``.
     density, sound_speed : float
-        Of the undisturbed air, ``kg/m**3``, ``m/s``.
+        Density of the undisturbed air and its speed of sound, ``kg/m**3``, ``m/s``.
     observer_position : (n_observers, 3) array
-        From the rotor centre, +z toward thrust, ``m``.
+        Positions from the rotor centre, +z toward thrust, ``m``.
     oaspl_db, oaspl_dba : (n_observers,) arrays
         Levels of the tones that the totals take in; silence where they are not connected.
 
     Outputs
     -------
     broadband_mean_square_pressure : (n_observers, n_bands) array
-        Of the noise in each third octave, ``Pa**2``; these add for any number of rotors.
+        Mean square of the noise in each third octave, ``Pa**2``; these add for any number of
+        rotors.
     band_frequency : (n_bands,) array
         Mid-band frequencies, `propmdao.analysis.self_noise.BANDS_HZ`, ``Hz``.
     oaspl_broadband_db, oaspl_broadband_dba : (n_observers,) arrays
@@ -74,32 +79,33 @@ class BroadbandComp(NodesComp):
     num_nodes : int or None
         Number of operating points; None is a single one, with the shapes above.
     propeller : Propeller
-        Number of blades, stations, section shapes and initial thickness.
+        Propeller with the number of blades, stations, section shapes and initial thickness.
     observers : (n_observers, 3) array
-        Initial `observer_position` [m]; `propmdao.acoustics.kinematics.observers.arc` makes one.
+        Initial `observer_position` [m]; `propmdao.arc` makes positions.
     fidelity : Fidelity
         Numbers of panels.
     trip : {"none", "light", "heavy"}
-        How the boundary layers are tripped.
+        Tripping of the boundary layers; "none" is the default.
 
     Raises
     ------
     om.AnalysisError
-        When the blade tip is not slower than sound, or an observer not outside the rotor, with the
-        node where there are several.
+        If the blade tip is not slower than sound, or an observer not outside the rotor; with
+        `num_nodes` the message has the node.
+    ValueError
+        If `observers` are no positions.
     """
 
     def initialize(self) -> None:
         super().initialize()
-        self.options.declare("propeller", types=Propeller, desc="Blades, stations, sections.")
-        self.options.declare("observers", types=np.ndarray, desc="Initial positions [m].")
-        self.options.declare("fidelity", Fidelity(), types=Fidelity, desc="Numbers of panels.")
-        declare_trip(self.options)
+        self.options.declare("propeller", types=Propeller, desc="the described propeller")
+        declare_observers(self.options)
+        declare_model(self.options, ["fidelity", "trip"])
 
     def setup(self) -> None:
         propeller, fidelity = self.options["propeller"], self.options["fidelity"]
-        observers = self.options["observers"]
-        nc, ns, n_observers = fidelity.n_chordwise, fidelity.n_spanwise, len(observers)
+        nc, ns = fidelity.n_chordwise, fidelity.n_spanwise
+        n_observers = len(self.options["observers"])
         blade = Blade.from_propeller(propeller)
         self.add_input("lattice_nodes", shape=(nc + 1, ns + 1, 3), units="m", tags=STATIC)
         self.add_point_input("section_speed", shape=(ns,), units="m/s")
@@ -107,7 +113,7 @@ class BroadbandComp(NodesComp):
         self.add_input(
             "thickness_over_chord", val=np.asarray(blade.thickness_over_chord), tags=STATIC
         )
-        add_noise_inputs(self, observers)
+        add_noise_inputs(self)
         self.add_point_input("oaspl_db", _SILENCE_DB, shape=(n_observers,), desc="Of the tones.")
         self.add_point_input("oaspl_dba", _SILENCE_DB, shape=(n_observers,), desc="Of the tones.")
         self.add_point_output(

@@ -7,18 +7,33 @@ from typing import Any
 
 import numpy as np
 import openmdao.api as om
+from openmdao.utils.options_dictionary import OptionsDictionary
 
-from propmdao.aerodynamics.sections.polars.family import SectionPolars, blade_tables
+from propmdao.aerodynamics.sections.polars.family import blade_tables
 from propmdao.components.bases.array_function import Arrays, evaluate
 from propmdao.components.bases.jax_component import JaxComponent
 from propmdao.components.bases.nodes_comp import STATIC
-from propmdao.components.inputs.rotor_inputs import require_diameter
+from propmdao.components.inputs.model_options import declare_model
+from propmdao.components.inputs.rotor_inputs import declare_polars, require_diameter
 from propmdao.geometry.blade import Blade, design_lift_coefficient
 from propmdao.geometry.meshes import blade_meshes, mesh_radii
 from propmdao.propeller.description import Propeller
 from propmdao.records.fidelity import Fidelity
 
 CAMBER_INPUTS = ("camber_over_chord", "design_lift_coefficient")
+
+
+def declare_camber(options: OptionsDictionary) -> None:
+    """Declare the input that gives the camber.
+
+    Parameters
+    ----------
+    options : OptionsDictionary
+        Options of a component or group.
+    """
+    options.declare(
+        "camber", CAMBER_INPUTS[0], values=CAMBER_INPUTS, desc="input that gives the camber"
+    )
 
 
 def blade_distributions(propeller: Propeller, camber: str) -> dict[str, Any]:
@@ -34,7 +49,7 @@ def blade_distributions(propeller: Propeller, camber: str) -> dict[str, Any]:
     Returns
     -------
     dict of (n_stations,) arrays
-        By input name; `beta` in radians.
+        Distributions by input name; `beta` in radians.
     """
     blade = Blade.from_propeller(propeller)
     names = ("chord_over_R", "beta", "sweep_over_R", "rake_over_R", "thickness_over_chord")
@@ -51,20 +66,22 @@ class GeometryComp(JaxComponent):
     Inputs
     ------
     diameter : float
-        Initially the propeller's, ``m``; all distributions are over its half, R, and stay so.
+        Diameter from tip to tip, initially the propeller's, ``m``; the distributions are over its
+        half, the tip radius R, and grow along.
     chord_over_R : (n_stations,) array
-        Chord over tip radius. All distributions start as the propeller's.
+        Chord over tip radius, initially the propeller's, like all distributions.
     beta : (n_stations,) array
         Blade angle from the rotor plane, ``rad``: connect ``deg`` as you like.
     sweep_over_R, rake_over_R : (n_stations,) arrays
-        Quarter chord aft (against rotation) of the radial line, and toward thrust.
+        Distance of the quarter chord from the radial line over the tip radius: aft, against the
+        rotation, and toward thrust.
     thickness_over_chord : (n_stations,) array
         Maximum thickness over chord.
     camber_over_chord : (n_stations,) array
-        Maximum camber over chord, if option `camber` names it; the shape of the camber line is
+        Maximum camber over chord, if the option `camber` names it; the shape of the camber line is
         that of the propeller's airfoils.
     design_lift_coefficient : (n_stations,) array
-        Or the camber as design lift coefficient (thin-airfoil theory), if `camber` names that.
+        Camber as design lift coefficient by thin-airfoil theory, if the option `camber` names it.
 
     Outputs
     -------
@@ -73,34 +90,33 @@ class GeometryComp(JaxComponent):
     surface_nodes : (n_contour, n_surface_span, 3) array
         Points of the section contours for acoustics, ``m``.
     section_polars : (n_spanwise, 3, n_re, n_alpha) array
-        With option `polars`: lift, logarithm of drag and moment coefficients of the sections in the
-        middle of the strips, the values of a `propmdao.aerodynamics.sections.polars.PolarTable`.
+        Lift, logarithm of drag and moment coefficients of the sections in the middle of the strips,
+        the values of a `PolarTable`; an output if there is the option `polars`.
 
     Options
     -------
     propeller : Propeller
-        Stations, airfoils and initial values.
+        Propeller with the stations, airfoils and initial values.
     fidelity : Fidelity
         Numbers of panels.
-    camber : str
-        Which of the two camber inputs there is.
+    camber : {"camber_over_chord", "design_lift_coefficient"}
+        Input that gives the camber; "camber_over_chord" is the default.
     polars : SectionPolars or None
-        Of `propmdao.aerodynamics.sections.polars.polars_for`; None for inviscid flow.
+        Polars of the propeller's sections, as `polars_for` finds them; None (default) for inviscid
+        flow.
 
     Raises
     ------
     om.AnalysisError
-        When the diameter or a chord is not positive, or a thickness not between 0 and 1 (splines
-        can overshoot).
+        If the diameter or a chord is not positive, or a thickness not between 0 and 1 (splines can
+        overshoot).
     """
 
     def initialize(self) -> None:
-        self.options.declare("propeller", types=Propeller, desc="Stations, sections.")
-        self.options.declare("fidelity", Fidelity(), types=Fidelity, desc="Numbers of panels.")
-        self.options.declare(
-            "camber", "camber_over_chord", values=CAMBER_INPUTS, desc="How camber is given."
-        )
-        self.options.declare("polars", None, types=SectionPolars, allow_none=True, desc="Or None.")
+        self.options.declare("propeller", types=Propeller, desc="the described propeller")
+        declare_model(self.options, ["fidelity"])
+        declare_camber(self.options)
+        declare_polars(self.options)
 
     def setup(self) -> None:
         propeller, fidelity = self.options["propeller"], self.options["fidelity"]

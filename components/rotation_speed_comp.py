@@ -7,11 +7,7 @@ from typing import Any
 import openmdao.api as om
 
 from propmdao.aerodynamics.solutions import axial
-from propmdao.aerodynamics.trim import (
-    TrimError,
-    require_bounds,
-    rotation_speed_by_interpolation,
-)
+from propmdao.aerodynamics.trim import rotation_speed_by_interpolation
 from propmdao.components.bases.array_function import Arrays
 from propmdao.components.bases.nodes_comp import NodesComp
 from propmdao.components.inputs.rotor_inputs import (
@@ -20,7 +16,12 @@ from propmdao.components.inputs.rotor_inputs import (
     require_diameter,
     rotor_at,
 )
-from propmdao.components.inputs.rpm_bounds import bounds_at, declare_bounds, given_bounds
+from propmdao.components.inputs.rpm_bounds import (
+    bounds_at,
+    checked_bounds_at,
+    declare_bounds,
+    fixed_bounds,
+)
 from propmdao.records.units import RAD_PER_S
 
 
@@ -34,18 +35,10 @@ class RotationSpeedComp(NodesComp):
 
     Inputs
     ------
-    lattice_nodes : (n_chordwise + 1, n_spanwise + 1, 3) array
-        Corner points of the lattice of blade 1, ``m``.
-    diameter : float
-        Of the propeller that the lattice is one of, ``m``.
-    speed : float
-        Axial flight speed, 0 is hover, ``m/s``.
-    density : float
-        Air density, ``kg/m**3``.
     thrust_required : float
-        Thrust of all blades, ``N``; of exactly 0 a propeller that stands still.
-    section_polars, sound_speed
-        With option `polars`: as `AerodynamicsComp` takes them.
+        Thrust of all blades, ``N``; exactly 0 means a propeller that stands still.
+
+    The other inputs are those of `AerodynamicsComp` without `rpm`.
 
     Outputs
     -------
@@ -54,25 +47,19 @@ class RotationSpeedComp(NodesComp):
 
     Options
     -------
-    num_nodes : int or None
-        Number of operating points; None is a single one, with the shapes above.
-    n_blades : int
-        Number of equally spaced blades.
-    fidelity : Fidelity
-        Numbers of panels.
     rpm_bounds : (float, float) or None
-        The two rotation speeds at which the thrust is computed [rpm]; None: as
-        `TrimmedAerodynamicsComp` has it.
-    polars : SectionPolars or None
-        Whose Reynolds numbers and angles `section_polars` has; None for inviscid flow.
-    stall_delay : bool
-        Whether rotation delays the stall of the sections.
+        The two rotation speeds at which the thrust is computed [rpm]; None (default): the bounds
+        of `TrimmedAerodynamicsComp`.
+
+    The other options are those of `AerodynamicsComp` without `loads`.
 
     Raises
     ------
     om.AnalysisError
-        When the diameter is not positive, or the rotation speed not between the two, with the node
-        where there are several.
+        If the diameter is not positive, the flight is too fast to trim, or the rotation speed is
+        not between the two; with `num_nodes` the message has the node.
+    ValueError
+        If `rpm_bounds` are not positive and rising.
     """
 
     def initialize(self) -> None:
@@ -81,23 +68,18 @@ class RotationSpeedComp(NodesComp):
         declare_bounds(self.options)
 
     def setup(self) -> None:
-        constants = add_rotor_inputs(self)
+        self.constants = add_rotor_inputs(self), fixed_bounds(self.options)
         self.add_point_input("thrust_required", val=1.0, units="N")
         self.add_point_output("rpm", val=4000.0, units="rpm")
         self.function = _interpolated
         self.static = self.options["n_blades"]
-        self.constants = constants, given_bounds(self.options)
 
     def at_rest(self, inputs: Arrays) -> bool:
         return not inputs["thrust_required"].any()
 
     def check(self, inputs: Any, values: Any) -> None:
         require_diameter(inputs)
-        bounds = bounds_at(inputs, self.constants[1])
-        try:
-            require_bounds(bounds, inputs["speed"][0])
-        except TrimError as error:
-            raise om.AnalysisError(str(error)) from error
+        bounds = checked_bounds_at(inputs, fixed_bounds(self.options))
         low, high = float(bounds.low) / RAD_PER_S, float(bounds.high) / RAD_PER_S
         (rpm,) = values["rpm"]
         if not low <= rpm <= high:
@@ -108,8 +90,8 @@ class RotationSpeedComp(NodesComp):
 
 
 def _interpolated(inputs: Arrays, constants: Any, static: int) -> Arrays:
-    rotor_constants, given = constants
-    bounds = bounds_at(inputs, given)
+    rotor_constants, fixed = constants
+    bounds = bounds_at(inputs, fixed)
     case = rotor_at(inputs, rotor_constants, static, bounds.low)
     omega = rotation_speed_by_interpolation(axial, case, inputs["thrust_required"][0], bounds)
     return {"rpm": omega[None] / RAD_PER_S}

@@ -7,19 +7,17 @@ from typing import Any
 import openmdao.api as om
 
 from propmdao.aerodynamics.solutions import axial
-from propmdao.aerodynamics.solutions.case import RotorCase
 from propmdao.aerodynamics.solutions.known_root import trimmed_at
-from propmdao.aerodynamics.trim import (
-    Bounds,
-    TrimError,
-    require_bounds,
-    require_reached,
-    solve_for_thrust,
-)
+from propmdao.aerodynamics.trim import TrimError, require_reached, solve_for_thrust
 from propmdao.components.aerodynamics_comp import AerodynamicsComp, loads_outputs
 from propmdao.components.bases.array_function import Arrays
-from propmdao.components.inputs.rotor_inputs import require_diameter, rotor_at
-from propmdao.components.inputs.rpm_bounds import bounds_at, declare_bounds, given_bounds
+from propmdao.components.inputs.rotor_inputs import RotorConstants, require_diameter, rotor_at
+from propmdao.components.inputs.rpm_bounds import (
+    bounds_at,
+    checked_bounds_at,
+    declare_bounds,
+    fixed_bounds,
+)
 from propmdao.records.units import RAD_PER_S
 
 
@@ -32,32 +30,33 @@ class TrimmedAerodynamicsComp(AerodynamicsComp):
     Inputs
     ------
     thrust_required : float
-        Thrust of all blades, ``N``; of exactly 0 a propeller that stands still.
-    lattice_nodes, diameter, speed, density, section_polars, sound_speed
-        As `AerodynamicsComp` takes them.
+        Thrust of all blades, ``N``; exactly 0 means a propeller that stands still.
+
+    The other inputs are those of `AerodynamicsComp` without `rpm`.
 
     Outputs
     -------
     rpm : float
         Rotation speed, ``rpm``.
-    thrust, torque, shaft_power, efficiency, J, CT, CQ, CP, circulation, load_position, \
-load_force, section_speed, section_lift_coefficient
-        Of `AerodynamicsComp`.
+
+    The other outputs are those of `AerodynamicsComp`.
 
     Options
     -------
     rpm_bounds : (float, float) or None
-        Lowest and highest rotation speed [rpm]; None (default): where the tip of the diameter turns
-        at 0.01 to 0.9 of the standard speed of sound.
-    num_nodes, loads, n_blades, fidelity, polars, stall_delay
-        As `AerodynamicsComp` takes them.
+        Lowest and highest rotation speed [rpm]; None (default): the tip turns at a hundredth of the
+        standard speed of sound, and moves through the air at nine tenths of it.
+
+    The other options are those of `AerodynamicsComp`.
 
     Raises
     ------
     om.AnalysisError
-        When the diameter is not positive, the thrust is out of reach between the bounds, with the
-        thrust at both, or the solution does not converge, with the reason and, where there are
-        several, the node.
+        If the diameter is not positive, the flight is too fast to trim, the thrust is out of reach
+        between the bounds, or the solution does not converge; the message has the reason, the
+        thrust at both bounds and, with `num_nodes`, the node.
+    ValueError
+        If `rpm_bounds` are not positive and rising.
     """
 
     def initialize(self) -> None:
@@ -66,7 +65,7 @@ load_force, section_speed, section_lift_coefficient
 
     def setup(self) -> None:
         super().setup()
-        self.constants = self.constants, given_bounds(self.options)
+        self.search_constants = self.constants, fixed_bounds(self.options)
         self.search, self.function = _trimmed, _at_root
         self.state, self.residual = "rotation_speed", "missing_thrust"
         self.state_outputs = {"rpm": 1.0 / RAD_PER_S}
@@ -80,9 +79,10 @@ load_force, section_speed, section_lift_coefficient
 
     def check(self, inputs: Any, values: Any) -> None:
         require_diameter(inputs)
-        case, thrust, bounds = _asked(inputs, self.constants, self.options["n_blades"])
+        bounds = checked_bounds_at(inputs, fixed_bounds(self.options))
+        case = rotor_at(inputs, self.constants, self.options["n_blades"], bounds.low)
+        thrust = inputs["thrust_required"][0]
         try:
-            require_bounds(bounds, case.state.speed)
             require_reached(values["trimmed"], axial, case, thrust, bounds)
         except TrimError as error:
             raise om.AnalysisError(str(error)) from error
@@ -90,27 +90,21 @@ load_force, section_speed, section_lift_coefficient
 
 
 def _trimmed(inputs: Arrays, constants: Any, static: int) -> Arrays:
-    case, thrust, bounds = _asked(inputs, constants, static)
-    trimmed = solve_for_thrust(axial, case, thrust, bounds)
+    rotor_constants, fixed = constants
+    bounds = bounds_at(inputs, fixed)
+    case = rotor_at(inputs, rotor_constants, static, bounds.low)
+    trimmed = solve_for_thrust(axial, case, inputs["thrust_required"][0], bounds)
     state = case.state.turning(trimmed.rotation_speed)
-    found = {
+    return {
+        **loads_outputs(trimmed.loads, state, inputs),
         "rotation_speed": trimmed.rotation_speed[None],
         "trimmed": trimmed,
         "loads": trimmed.loads,
     }
-    return {**loads_outputs(trimmed.loads, state, inputs), **found}
 
 
-def _asked(inputs: Arrays, constants: Any, n_blades: int) -> tuple[RotorCase, Any, Bounds]:
-    """The rotor, the thrust required and where the rotation speed is looked for."""
-    rotor_constants, given = constants
-    bounds = bounds_at(inputs, given)
-    case = rotor_at(inputs, rotor_constants, n_blades, bounds.low)
-    return case, inputs["thrust_required"][0], bounds
-
-
-def _at_root(inputs: Arrays, constants: Any, static: int) -> Arrays:
+def _at_root(inputs: Arrays, constants: RotorConstants, static: int) -> Arrays:
     omega = inputs["rotation_speed"][0]
-    case = rotor_at(inputs, constants[0], static, omega)
+    case = rotor_at(inputs, constants, static, omega)
     loads, missing = trimmed_at(omega, case, inputs["thrust_required"][0])
     return {**loads_outputs(loads, case.state, inputs), "missing_thrust": missing[None]}

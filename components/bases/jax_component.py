@@ -88,7 +88,8 @@ class JaxComponent(om.ExplicitComponent):
             return []
         batch = [*points, *[points[-1]] * (batch_size - len(points))]
         inputs = {name: np.stack([point[name] for point in batch]) for name in points[0]}
-        values = jax.device_get(evaluate_all(self.evaluated(), self.static, self.constants, inputs))
+        function, constants = self.evaluated()
+        values = jax.device_get(evaluate_all(function, self.static, constants, inputs))
         return [
             self._checked(point, jax.tree.map(itemgetter(place), values))
             for place, point in enumerate(points)
@@ -101,9 +102,9 @@ class JaxComponent(om.ExplicitComponent):
             return error
         return {name: values[name] for name in self.output_shapes()}
 
-    def evaluated(self) -> Function:
-        """Function that `compute` calls; a `RootComponent` searches first."""
-        return self.function
+    def evaluated(self) -> tuple[Function, Any]:
+        """Function that `compute` calls, and its constants; a `RootComponent` searches first."""
+        return self.function, self.constants
 
     def n_points(self) -> int:
         """Number of points that the component works at before it comes back to the first.
@@ -144,7 +145,8 @@ class JaxComponent(om.ExplicitComponent):
         om.AnalysisError
             When `check` raises it.
         """
-        values = evaluate(self.evaluated(), self.static, self.constants, inputs)
+        function, constants = self.evaluated()
+        values = evaluate(function, self.static, constants, inputs)
         self.check(inputs, values)
         return values
 

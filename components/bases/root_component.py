@@ -30,13 +30,15 @@ class RootComponent(JaxComponent):
     - ``state_outputs``: outputs (1,) that are the state in other units, with what it is multiplied
       by;
     - ``search``: a function like ``function`` that finds the state: it takes the inputs alone, and
-      returns the outputs, the state and whatever ``check`` needs.
+      returns the outputs, the state and whatever ``check`` needs;
+    - ``search_constants``: its constants, those of ``function`` and whatever bounds the search.
 
     Derivatives are those of the implicit function: with the function linearised once at the root,
     whose gradient of the residual serves all products, no search is repeated or differentiated.
     """
 
     search: Function
+    search_constants: Any
     state: str
     residual: str
     state_outputs: Mapping[str, float] = {}
@@ -45,8 +47,8 @@ class RootComponent(JaxComponent):
         super().__init__(**options)
         self._searched = LastPoints(super().values_at, self.n_points)
 
-    def evaluated(self) -> Function:
-        return self.search
+    def evaluated(self) -> tuple[Function, Any]:
+        return self.search, self.search_constants
 
     def values_at(self, inputs: Arrays) -> Mapping[str, Any]:
         return self._searched(inputs)  # which derivatives ask for again

@@ -1,1 +1,1 @@
-"""What components and groups are given: operating points, rotors, observers, options."""
+"""Inputs and options that several components share: operating points, rotors, observers, models."""

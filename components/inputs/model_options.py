@@ -1,8 +1,9 @@
-"""Options of the group that say how a propeller is modelled, from the table of quantities."""
+"""Options that say how a propeller is modelled, from the table of quantities."""
 
 from __future__ import annotations
 
-from typing import get_args
+from collections.abc import Iterable
+from typing import Any, get_args
 
 from openmdao.utils.options_dictionary import OptionsDictionary
 
@@ -12,37 +13,35 @@ from propmdao.records.models import Model, Trip
 from propmdao.records.quantities import ASKED
 from propmdao.records.wake_law import WakeLaw
 
-_NAMES = tuple(name for name, quantity in ASKED.items() if quantity.record.startswith("model."))
+_RECORDS = {
+    "fidelity": (Fidelity(), "numbers of panels, wake nodes and harmonics"),
+    "wake": (WakeLaw(), "how the prescribed wake moves"),
+}
+_WORDS = {"trip": get_args(Trip)}
+#: Options of `declare_model`.
+MODEL_OPTIONS = (*_RECORDS, "viscous", "stall_delay", "broadband", "trip")
 
 
-def declare_trip(options: OptionsDictionary) -> None:
-    """Declare how the boundary layers are tripped.
+def declare_model(options: OptionsDictionary, names: Iterable[str] = MODEL_OPTIONS) -> None:
+    """Declare options of a model, with the defaults of an analysis.
 
     Parameters
     ----------
     options : OptionsDictionary
         Options of a component or group.
+    names : iterable of str
+        Names among `MODEL_OPTIONS`.
     """
-    quantity = ASKED["trip"]
-    options.declare("trip", quantity.default, values=get_args(Trip), desc=quantity.meaning)
-
-
-def declare_model(options: OptionsDictionary) -> None:
-    """Declare the options that `model_of` reads.
-
-    Parameters
-    ----------
-    options : OptionsDictionary
-        Options of a group.
-    """
-    options.declare("fidelity", Fidelity(), types=Fidelity, desc="Panels, harmonics, wake nodes.")
-    options.declare("wake", WakeLaw(), types=WakeLaw, desc="How the prescribed wake moves.")
-    for name in _NAMES:
-        if name == "trip":
-            declare_trip(options)
+    for name in names:
+        if name in _RECORDS:
+            default, meaning = _RECORDS[name]
+            options.declare(name, default, types=type(default), desc=meaning)
         else:
             quantity = ASKED[name]
-            options.declare(name, quantity.default, types=bool, desc=quantity.meaning)
+            allowed: dict[str, Any] = {"types": bool}
+            if name in _WORDS:
+                allowed = {"values": _WORDS[name]}
+            options.declare(name, quantity.default, desc=quantity.meaning, **allowed)
 
 
 def model_of(options: OptionsDictionary) -> Model:
@@ -51,17 +50,17 @@ def model_of(options: OptionsDictionary) -> Model:
     Parameters
     ----------
     options : OptionsDictionary
-        With the options of `declare_model`.
+        Options of a group, all of `MODEL_OPTIONS` among them.
 
     Returns
     -------
     Model
-        How loads and noise are computed.
+        The model of loads and noise.
 
     Raises
     ------
     ValueError
         If options contradict each other.
     """
-    values = {name: options[name] for name in (*_NAMES, "fidelity", "wake")}
-    return Request.of(rpm=0.0, **values).model
+    # A request has a point, too, but the model does not depend on it.
+    return Request.of(rpm=0.0, **{name: options[name] for name in MODEL_OPTIONS}).model

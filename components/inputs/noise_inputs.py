@@ -6,27 +6,54 @@ from typing import Any
 
 import numpy as np
 import openmdao.api as om
+from openmdao.utils.options_dictionary import OptionsDictionary
 
 from propmdao.acoustics.kinematics.limits import require_outside_rotor, require_subsonic_tip
 from propmdao.components.bases.array_function import Arrays
 from propmdao.components.bases.nodes_comp import STATIC, NodesComp
 from propmdao.components.inputs.point_inputs import add_point_inputs, state_at
+from propmdao.records.listening import Floats, require_positions
 from propmdao.records.states import RotorState
 from propmdao.records.units import RAD_PER_S
 
 
-def add_noise_inputs(component: NodesComp, observers: np.ndarray) -> None:
+def declare_observers(options: OptionsDictionary, optional: bool = False) -> None:
+    """Declare the observers, whose positions are checked when they are given.
+
+    Parameters
+    ----------
+    options : OptionsDictionary
+        Options of a component or group.
+    optional : bool
+        None, no observers, is allowed and the default.
+    """
+    desc = "initial positions of the observers from the rotor centre (n, 3) [m]"
+    if optional:
+        options.declare("observers", None, set_function=_positions_or_none, desc=desc)
+    else:
+        options.declare("observers", set_function=_positions, desc=desc)
+
+
+# Functions of the module, because OpenMDAO's recorders pickle options.
+def _positions(_: Any, observers: Any) -> Floats:
+    return require_positions(observers)
+
+
+def _positions_or_none(_: Any, observers: Any) -> Floats | None:
+    return None if observers is None else require_positions(observers)
+
+
+def add_noise_inputs(component: NodesComp) -> None:
     """Declare the inputs that `noise_state` reads, and the observers.
 
     Parameters
     ----------
     component : NodesComp
-        Component in its ``setup``.
-    observers : (n_observers, 3) array
-        Initial positions [m].
+        Component in its ``setup``, with the option of `declare_observers`.
     """
     component.add_point_input("rpm", val=4000.0, units="rpm")
     add_point_inputs(component, ["speed", "density", "sound_speed"])
+    observers = component.options["observers"]
     component.add_input("observer_position", val=observers, units="m", tags=STATIC)
 
 
@@ -36,30 +63,30 @@ def noise_state(inputs: Arrays) -> RotorState:
     Parameters
     ----------
     inputs : dict of arrays
-        Inputs by name.
+        Inputs of one point by name.
 
     Returns
     -------
     RotorState
-        For the sources of sound.
+        State for the sources of sound.
     """
     return state_at(inputs, inputs["rpm"][0] * RAD_PER_S)
 
 
-def check_rotor(inputs: Any, nodes: str) -> None:
+def check_rotor(inputs: Arrays, nodes: str) -> None:
     """Refuse blades that reach the speed of sound or an observer.
 
     Parameters
     ----------
-    inputs : mapping
-        Inputs of the component, those of `add_noise_inputs` among them.
+    inputs : dict of arrays
+        Inputs of one point by name, those of `add_noise_inputs` among them.
     nodes : str
         Name of the input that holds points of the blade, (..., 3).
 
     Raises
     ------
     om.AnalysisError
-        When the blade tip is not slower than sound, or an observer not outside the rotor.
+        If the blade tip is not slower than sound, or an observer not outside the rotor.
     """
     x, y, _ = np.moveaxis(np.asarray(inputs[nodes]), -1, 0)
     radius = float(np.hypot(x, y).max())

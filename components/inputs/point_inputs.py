@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from typing import Any
 
 from propmdao.components.bases.array_function import Arrays
 from propmdao.components.bases.nodes_comp import NodesComp
 from propmdao.records.air import Air
+from propmdao.records.pytrees import Scalar
 from propmdao.records.quantities import AIR, ASKED
 from propmdao.records.states import RotorState
 
-#: What of the air may be an input.
+#: Names of all properties of the air; each of them may be an input.
 AIR_INPUTS = tuple(name for name, quantity in ASKED.items() if quantity.record == AIR)
 
 
@@ -32,20 +32,21 @@ def add_point_inputs(component: NodesComp, names: Iterable[str]) -> None:
         )
 
 
-def state_at(inputs: Arrays, rotation_speed: Any) -> RotorState:
+def state_at(inputs: Arrays, rotation_speed: Scalar) -> RotorState:
     """State of the rotor at an operating point.
 
     Parameters
     ----------
     inputs : dict of arrays
-        Inputs by name: the speed, and of the air what is an input; the rest of it is standard.
-    rotation_speed : float
+        Inputs of one point by name: the speed, and those properties of the air that the component
+        has as inputs; the other ones are standard.
+    rotation_speed : scalar
         Rotation speed [rad/s].
 
     Returns
     -------
     RotorState
-        For the solutions and the sources of sound.
+        State for the solutions and the sources of sound.
     """
     air = {name: inputs[name][0] for name in AIR_INPUTS if name in inputs}
     return RotorState(rotation_speed, inputs["speed"][0], Air(**air))

@@ -1,4 +1,4 @@
-"""What the components that solve the lattice are given: a blade, its sections and the air."""
+"""Inputs of the components that solve the lattice: a blade, its sections and the air."""
 
 from __future__ import annotations
 
@@ -17,25 +17,24 @@ from propmdao.aerodynamics.solutions.case import RotorCase
 from propmdao.aerodynamics.wakes.helical import WakeTransport, wake_transport
 from propmdao.components.bases.array_function import Arrays
 from propmdao.components.bases.nodes_comp import STATIC, NodesComp
+from propmdao.components.inputs.model_options import declare_model
 from propmdao.components.inputs.point_inputs import add_point_inputs, state_at
-from propmdao.records.fidelity import Fidelity
-from propmdao.records.pytrees import record
-from propmdao.records.wake_law import WakeLaw
+from propmdao.records.pytrees import Scalar, record
 
 
 @record
 class RotorConstants:
-    """What of a rotor no input changes.
+    """Properties of a rotor that no input changes.
 
     Attributes
     ----------
     wake : WakeTransport
-        How the wake moves, and where its nodes are.
+        Law of the wake, and the ages of its nodes.
     grid : PolarTable or None
-        Angles and Reynolds numbers of the input `section_polars`, without polars; None for inviscid
+        Angles and Reynolds numbers of the input `section_polars`, without values; None in inviscid
         flow.
     stall_delay : float
-        1 where rotation delays stalls, 0 for polars as in two dimensions.
+        1 if rotation delays stall, 0 for polars as in two dimensions.
     """
 
     wake: WakeTransport
@@ -44,18 +43,29 @@ class RotorConstants:
 
 
 def declare_rotor(options: OptionsDictionary) -> None:
-    """Declare the options that `add_rotor_inputs` reads, and the number of blades.
+    """Declare the number of blades, and the options that `add_rotor_inputs` reads.
 
     Parameters
     ----------
     options : OptionsDictionary
         Options of a component.
     """
-    options.declare("n_blades", types=int, desc="Number of blades.")
-    options.declare("fidelity", Fidelity(), types=Fidelity, desc="Panels and wake nodes.")
-    options.declare("polars", None, types=SectionPolars, allow_none=True, desc="Or None.")
-    options.declare("stall_delay", True, types=bool, desc="Rotation delays stalls.")
-    options.declare("wake", WakeLaw(), types=WakeLaw, desc="How the prescribed wake moves.")
+    options.declare("n_blades", types=int, desc="number of equally spaced blades")
+    declare_polars(options)
+    declare_model(options, ["fidelity", "stall_delay", "wake"])
+
+
+def declare_polars(options: OptionsDictionary) -> None:
+    """Declare the polars of the sections.
+
+    Parameters
+    ----------
+    options : OptionsDictionary
+        Options of a component or group.
+    """
+    options.declare(
+        "polars", None, types=SectionPolars, allow_none=True, desc="polars of the blade's sections"
+    )
 
 
 def add_rotor_inputs(component: NodesComp) -> RotorConstants:
@@ -69,7 +79,7 @@ def add_rotor_inputs(component: NodesComp) -> RotorConstants:
     Returns
     -------
     RotorConstants
-        What no input changes.
+        Properties of the rotor that no input changes.
     """
     options = component.options
     fidelity, polars = options["fidelity"], options["polars"]
@@ -89,19 +99,19 @@ def add_rotor_inputs(component: NodesComp) -> RotorConstants:
 
 
 def rotor_at(
-    inputs: Arrays, constants: RotorConstants, n_blades: int, rotation_speed: Any
+    inputs: Arrays, constants: RotorConstants, n_blades: int, rotation_speed: Scalar
 ) -> RotorCase:
     """Rotor that the solutions of the lattice take.
 
     Parameters
     ----------
     inputs : dict of arrays
-        Inputs by name.
+        Inputs of one point by name.
     constants : RotorConstants
-        What `add_rotor_inputs` returned.
+        Properties that `add_rotor_inputs` returned.
     n_blades : int
         Number of blades.
-    rotation_speed : float
+    rotation_speed : scalar
         Rotation speed [rad/s].
 
     Returns
@@ -123,12 +133,12 @@ def require_diameter(inputs: Any) -> None:
     Parameters
     ----------
     inputs : mapping
-        Inputs with the diameter.
+        Inputs by name, the diameter among them.
 
     Raises
     ------
     om.AnalysisError
-        Where it is not positive.
+        If the diameter is not positive.
     """
     (diameter,) = inputs["diameter"]
     if not diameter > 0.0:

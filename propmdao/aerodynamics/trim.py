@@ -184,7 +184,7 @@ def require_reached(
         return
     ends = [
         f"{float(solver.solve(case.turning(end)).thrust):.4g} N at {float(end) / RAD_PER_S:g} rpm"
-        for end in (bounds.low, bounds.high)
+        for end in (np.float64(bounds.low), np.float64(bounds.high))  # one type, one program
     ]
     raise TrimError(
         f"thrust {float(thrust_required):g} N is out of reach at {float(case.state.speed):g} m/s: "

@@ -9,6 +9,40 @@ from propmdao.aerodynamics.sections.polars.propeller_polars import polars_for
 from propmdao.components import DifferentialEvolutionDriver, GeometryComp
 from propmdao.formats.propellers import load_propeller
 from propmdao.records.fidelity import Fidelity
+from propmdao.records.quantities import ASKED
+
+#: Changes of every input along which its derivatives are checked: large enough for differences,
+#: small beside the input. An input that is missing here is an error of the check.
+SCALES = {
+    "rpm": 5.0,
+    "thrust_required": 0.01,
+    "speed": 0.1,
+    "density": 1e-2,
+    "sound_speed": 1.0,
+    "diameter": 1e-3,
+    "chord_over_R": 1e-3,
+    "beta": 1e-3,
+    "sweep_over_R": 1e-3,
+    "rake_over_R": 1e-3,
+    "thickness_over_chord": 1e-3,
+    "camber_over_chord": 1e-4,
+    "design_lift_coefficient": 1e-2,
+    "lattice_nodes": 1e-5,
+    "surface_nodes": 1e-5,
+    "section_polars": 1e-3,
+    "load_position": 1e-5,
+    "load_force": 1e-4,
+    "section_speed": 0.1,
+    "section_lift_coefficient": 1e-3,
+    "observer_position": 1e-2,
+    "oaspl_db": 0.1,
+    "oaspl_dba": 0.1,
+}
+
+
+def scales_of(names):
+    """Scales of inputs by name; control points have that of their distribution."""
+    return {name: SCALES[name.removesuffix("_cp")] for name in names}
 
 
 class Recorded(om.ExplicitComponent):
@@ -85,7 +119,7 @@ def problem_of():
     def problem_of(component, **values):
         prob = om.Problem(reports=False)
         prob.model.add_subsystem("comp", component, promotes=["*"])
-        prob.setup()
+        prob.setup(mode="rev")
         for name, value in values.items():
             prob.set_val(name, value)
         return prob
@@ -94,21 +128,37 @@ def problem_of():
 
 
 @pytest.fixture(scope="session")
+def point_inputs():
+    """``point_inputs(group)``: names of its inputs that belong to an operating point."""
+
+    def point_inputs(group):
+        asked = {quantity.variable for quantity in ASKED.values() if quantity.per_node}
+        inputs, outputs = (
+            {meta["prom_name"] for meta in group.get_io_metadata(iotypes=kind).values()}
+            for kind in ("input", "output")
+        )
+        return sorted(asked & inputs - outputs)
+
+    return point_inputs
+
+
+@pytest.fixture(scope="session")
 def assert_partials():
-    """``assert_partials(prob, {input: step}, tolerance)`` for ``prob.model.comp``.
+    """``assert_partials(prob, tolerance)`` for all inputs of ``prob.model.comp``.
 
     Derivatives (of matrix-free components forward and reverse products) against central differences
-    over the given absolute steps, at which they have converged; the error of a block of derivatives
-    is relative to its largest.
+    over steps at which they have converged; the error of a block of derivatives is relative to its
+    largest.
     """
 
-    def check(prob, steps, tolerance):
-        for name, step in steps.items():
+    def check(prob, tolerance):
+        scales = scales_of(prob.model.comp.get_io_metadata(iotypes="input"))
+        for name, scale in scales.items():
             prob.model.comp.set_check_partial_options(
-                name, method="fd", form="central", step=step, step_calc="abs"
+                name, method="fd", form="central", step=0.1 * scale, step_calc="abs"
             )
         (blocks,) = prob.check_partials(out_stream=None).values()
-        assert {of_wrt[1] for of_wrt in blocks} == set(steps)
+        assert {of_wrt[1] for of_wrt in blocks} == set(scales)
         for of_wrt, block in blocks.items():
             largest = np.abs(block["J_fd"]).max()
             for mode in {"J_fwd", "J_rev"} & set(block):
@@ -125,22 +175,22 @@ def assert_partials():
 
 @pytest.fixture(scope="session")
 def assert_directional():
-    """``assert_directional(prob, {input: scale}, tolerance)`` for ``prob.model.comp``.
+    """``assert_directional(prob, tolerance)`` for all inputs of ``prob.model.comp``.
 
-    For large inputs: derivatives along a random direction, whose entries are of the scale given, of
-    every output weighted at random, by reverse products against central differences at the best of
-    several steps. Curvature jumps in places, so that no one step suits every output. With
+    For large inputs: derivatives along a random direction, whose entries are of the input's scale,
+    of every output weighted at random, by reverse products against central differences at the best
+    of several steps. Curvature jumps in places, so that no one step suits every output. With
     ``forward=True`` forward products are held to the reverse ones, too, which compiles for long.
     """
 
-    def check(prob, scales, tolerance, forward=False):
+    def check(prob, tolerance, forward=False):
         comp, rng = prob.model.comp, np.random.default_rng(3)
         inputs = {n: prob.get_val(n).copy() for n in comp.get_io_metadata(iotypes="input")}
         outputs = {n: prob.get_val(n).copy() for n in comp.get_io_metadata(iotypes="output")}
-        assert set(scales) == set(inputs)
+        scales = scales_of(inputs)
         weights = {of: rng.standard_normal(value.shape) for of, value in outputs.items()}
         along = {n: scale * rng.standard_normal(inputs[n].shape) for n, scale in scales.items()}
-        slopes = {of: gradients(comp, inputs, outputs, of, weights[of]) for of in outputs}
+        slopes = {of: gradients(comp, inputs, of, weights[of]) for of in outputs}
         for name in scales:
             exact = {of: np.vdot(slopes[of][name], along[name]) for of in outputs}
             if forward:
@@ -169,12 +219,8 @@ def assert_directional():
             for of, error in errors.items():
                 assert min(error) < tolerance, f"{of} by {name}: {error}"
 
-    def gradients(comp, inputs, outputs, of, weight):
+    def gradients(comp, inputs, of, weight):
         """Derivatives of one weighted output by every input."""
-        if not comp.matrix_free:
-            partials = {}
-            comp.compute_partials(inputs, partials)
-            return {n: (weight @ partials[of, n]).reshape(inputs[n].shape) for n in inputs}
         d_inputs = {n: np.zeros_like(value) for n, value in inputs.items()}
         comp.compute_jacvec_product(inputs, d_inputs, {of: weight}, "rev")
         return d_inputs
@@ -184,37 +230,38 @@ def assert_directional():
 
 @pytest.fixture(scope="session")
 def assert_totals():
-    """``assert_totals(prob, of, {input: scale}, tolerances)``: totals of a Problem that has run.
+    """``assert_totals(prob, of, wrt, tolerances)``: totals of a Problem that has run.
 
-    Along a random direction for each input, whose entries are of the scale given, against
+    Along a random direction for each input, whose entries are of the input's scale, against
     differences of fourth order at the best of several steps: the curvature of polars and of the
     fits of broadband noise jumps in places, so that no one step suits all. The error is relative to
     the largest; tolerances are 1e-6 unless given by output.
     """
 
-    def check(prob, of, scales, tolerances=None):
-        totals = prob.compute_totals(of=of, wrt=list(scales))
+    def check(prob, of, wrt, tolerances=None):
+        totals = prob.compute_totals(of=of, wrt=wrt)
         rng = np.random.default_rng(5)
-        for name, scale in scales.items():
+        for name, scale in scales_of(wrt).items():
             start = prob.get_val(name).copy()
             along = scale * rng.standard_normal(start.shape)
-            errors = {one: [] for one in of}
-            exact = {one: totals[one, name] @ along.ravel() for one in of}
+            errors = {output: [] for output in of}
+            exact = {output: totals[output, name] @ along.ravel() for output in of}
             for step in (1.0, 0.3, 0.1, 0.03, 0.01, 1e-3, 1e-4):
-                at = {}
+                points = {}
                 for k in (-2, -1, 1, 2):
                     prob.set_val(name, start + k * step * along)
                     prob.run_model()
-                    at[k] = {one: prob.get_val(one).copy().ravel() for one in of}
-                for one in of:
-                    slope = 8.0 * (at[1][one] - at[-1][one]) - at[2][one] + at[-2][one]
-                    largest = max(np.abs(exact[one]).max(), 1e-6 * np.abs(prob.get_val(one)).max())
-                    error = np.abs(slope / (12.0 * step) - exact[one]).max() / largest
-                    errors[one].append(error)
+                    points[k] = {output: prob.get_val(output).copy().ravel() for output in of}
+                for output in of:
+                    left2, left, right, right2 = (points[k][output] for k in (-2, -1, 1, 2))
+                    slope = (8.0 * (right - left) - right2 + left2) / (12.0 * step)
+                    size = 1e-6 * np.abs(prob.get_val(output)).max()
+                    largest = max(np.abs(exact[output]).max(), size)
+                    errors[output].append(np.abs(slope - exact[output]).max() / largest)
             prob.set_val(name, start)
-            for one in of:
-                tolerance = (tolerances or {}).get(one, 1e-6)
-                assert min(errors[one]) < tolerance, f"{one} by {name}: {errors[one]}"
+            for output in of:
+                tolerance = (tolerances or {}).get(output, 1e-6)
+                assert min(errors[output]) < tolerance, f"{output} by {name}: {errors[output]}"
         prob.run_model()
 
     return check

@@ -13,8 +13,12 @@ from numpy.testing import assert_allclose
 from propmdao.acoustics.kinematics.observers import arc
 from propmdao.analysis.single_point import analyze
 from propmdao.components import DifferentialEvolutionDriver, PropellerGroup
+from propmdao.propeller.catalog import propeller_file
+from propmdao.propeller.checks import PropellerError
+from propmdao.records.quantities import BROADBAND_LEVELS, LEVELS, RESULTS
+from propmdao.records.wake_law import WakeLaw
 
-ELEVATIONS = [-45.0, 0.0]
+OBSERVERS = arc(1.905, [-45.0, 0.0])
 
 
 @pytest.fixture
@@ -23,10 +27,9 @@ def problem(propeller, small):
 
     def problem(driver=None, **options):
         prob = om.Problem(driver=driver, reports=False)
-        options = {"propeller": propeller, "fidelity": small, **options}
-        prob.model.add_subsystem(
-            "propeller", PropellerGroup(observers=arc(1.905, ELEVATIONS), **options), promotes=["*"]
-        )
+        defaults = {"propeller": propeller, "observers": OBSERVERS, "fidelity": small}
+        options = {**defaults, **options}
+        prob.model.add_subsystem("propeller", PropellerGroup(**options), promotes=["*"])
         prob.model.set_input_defaults("speed", 8.0, units="m/s")
         if options.get("trim") != "rpm":
             prob.model.set_input_defaults("thrust_required", 1.2, units="N")
@@ -46,42 +49,61 @@ def test_group_agrees_with_analyze(problem, propeller, small, viscous, trip):
     assert_allclose(prob.get_val("thrust"), 1.2, rtol=1e-6)
     expected = analyze(
         propeller,
-        rpm=prob.get_val("rpm")[0],
+        rpm=prob.get_val("rpm").item(),
         speed=8.0,
         viscous=viscous,
         broadband=viscous,
         trip=trip,
-        observers=arc(1.905, ELEVATIONS),
+        observers=OBSERVERS,
         fidelity=small,
     ).to_dict()
-    for ours, theirs in (
-        ("thrust", "thrust"),
-        ("torque", "torque"),
-        ("shaft_power", "shaft_power"),
-        ("efficiency", "eta"),
-        ("J", "J"),
-        ("CT", "CT"),
-        ("CP", "CP"),
-    ):
-        assert_allclose(prob.get_val(ours), expected[theirs], rtol=1e-6, err_msg=ours)
-    for name in (
-        "spl_bpf_db",
-        "oaspl_thickness_db",
-        "oaspl_loading_db",
-        *([] if viscous else ["oaspl_db", "oaspl_dba"]),
-        *(["oaspl_broadband_db"] if viscous else []),
-    ):
-        theirs = [at[name] for at in expected["observers"]]
-        assert_allclose(prob.get_val(name), theirs, atol=1e-4, err_msg=name)
-    if viscous:
-        # analyze's levels are of everything that it computes, ours of tones keep their name
-        theirs = [at["oaspl_db"] for at in expected["observers"]]
-        assert_allclose(prob.get_val("oaspl_total_db"), theirs, atol=1e-4)
+    for name in ("thrust", "torque", "shaft_power", "eta", "J", "CT", "CQ", "CP"):
+        quantity = RESULTS[name]
+        value = prob.get_val(quantity.variable)
+        assert_allclose(value, expected[quantity.json], rtol=1e-6, err_msg=name)
+    for quantity in {**LEVELS, **(BROADBAND_LEVELS if viscous else {})}.values():
+        levels = [observer[quantity.json] for observer in expected["observers"]]
+        assert_allclose(prob.get_val(quantity.variable), levels, atol=1e-4, err_msg=quantity.name)
 
 
 def test_tripped_blades_without_broadband_noise_are_an_error(problem):
-    with pytest.raises(ValueError, match="trip 'light' is about broadband noise, which is off"):
+    with pytest.raises(ValueError, match="trip 'light' is about broadband noise: ask for"):
         problem(trip="light").setup()
+
+
+def test_a_propeller_is_described_or_found_by_its_name_or_file(problem, propeller, tmp_path):
+    file = tmp_path / "blade.toml"
+    file.write_text(propeller_file("apcsf_11x4.7").read_text("utf-8"), "utf-8")
+    torque = []
+    for described in (propeller, "apcsf_11x4.7", file, str(file)):
+        prob = problem(propeller=described)
+        prob.setup()
+        prob.run_model()
+        torque.append(prob.get_val("torque")[0])
+    assert torque == torque[:1] * 4
+
+
+def test_a_name_that_there_is_not_is_refused_with_near_ones(problem):
+    with pytest.raises(PropellerError, match="unknown propeller 'apcsf_11x4'; near: apcsf_11x4.7"):
+        problem(propeller="apcsf_11x4")
+
+
+def test_observers_that_are_no_positions_are_refused(problem):
+    for wrong in (np.array([[1.905, -45.0]]), np.zeros(3)):
+        with pytest.raises(ValueError, match=r"observers must be positions .*: propmdao.arc\("):
+            problem(observers=wrong)
+
+
+def test_the_law_of_the_wake_is_an_option(problem):
+    """A wake that stays nearer to the blades takes more of their thrust."""
+    thrust = []
+    for wake in (WakeLaw(), WakeLaw(inside=1.0)):
+        prob = problem(trim="rpm", wake=wake)
+        prob.setup()
+        prob.set_val("speed", 0.0)
+        prob.run_model()
+        thrust.append(prob.get_val("thrust")[0])
+    assert 0.5 < thrust[1] / thrust[0] < 0.99
 
 
 def test_drag_costs_torque(problem):
@@ -175,7 +197,7 @@ def test_wrong_control_points_are_clear_errors(problem, distributions, message):
         pytest.param("rpm", 0.5, marks=pytest.mark.slow),
     ],
 )
-def test_totals_against_differences(problem, assert_totals, trim, speed):
+def test_totals_against_differences(problem, assert_totals, point_inputs, trim, speed):
     """From blade, operating point and observers to loads and noise, trim in between.
 
     Hover is the least speed, so its derivatives are checked a little beside it.
@@ -193,20 +215,10 @@ def test_totals_against_differences(problem, assert_totals, trim, speed):
     prob.run_model()
     of = ["thrust", "torque", "spl_bpf_db", "oaspl_dba", "oaspl_broadband_db", "oaspl_total_dba"]
     of[:1] = ["thrust"] if trim == "rpm" else ["rpm"]
-    scales = {
-        "diameter": 1e-3,
-        "beta_cp": 1e-2,
-        "thickness_over_chord_cp": 1e-3,
-        "chord_over_R": 1e-3,
-        "design_lift_coefficient": 1e-2,
-        "speed": 0.1,
-        "density": 1e-2,
-        "sound_speed": 1.0,
-        "observer_position": 0.01,
-        **({"rpm": 20.0} if trim == "rpm" else {"thrust_required": 0.01}),
-    }
+    wrt = ["diameter", "beta_cp", "thickness_over_chord_cp", "chord_over_R"]
+    wrt += ["design_lift_coefficient", "observer_position", *point_inputs(prob.model.propeller)]
     # broadband noise has corners in every band: none is left only where the root's 1e-9 shows
-    assert_totals(prob, of, scales, {"oaspl_broadband_db": 1e-5, "oaspl_total_dba": 1e-5})
+    assert_totals(prob, of, wrt, {"oaspl_broadband_db": 1e-5, "oaspl_total_dba": 1e-5})
 
 
 def test_unreachable_thrust_is_a_failed_analysis(problem):
@@ -285,7 +297,7 @@ def test_entry_points_name_what_there_is(checkout):
 
 
 def test_the_group_is_a_model_by_itself(propeller, small):
-    group = PropellerGroup(propeller=propeller, observers=arc(1.905, -45.0), fidelity=small)
+    group = PropellerGroup(propeller=propeller, observers=OBSERVERS, fidelity=small)
     prob = om.Problem(group, reports=False)
     prob.setup()
     prob.run_model()

@@ -118,18 +118,10 @@ def test_derivatives_of_a_node_are_its_own(problem):
 
 
 @pytest.mark.parametrize("trim", ["thrust", "rpm"])
-def test_totals_against_differences(problem, trim, assert_totals):
+def test_totals_against_differences(problem, trim, assert_totals, point_inputs):
     values = POINTS if trim == "thrust" else AT_RPM
     prob = problem(2, values, trim=trim, observers=OBSERVERS)
-    scales = {
-        "diameter": 1e-3,
-        "beta": 1e-2,
-        "chord_over_R": 1e-3,
-        "speed": 0.1,
-        "density": 1e-2,
-        "sound_speed": 1.0,
-        "observer_position": 0.01,
-        **({"rpm": 20.0} if trim == "rpm" else {"thrust_required": 0.01}),
-    }
+    wrt = ["diameter", "beta", "chord_over_R", "observer_position"]
+    wrt += point_inputs(prob.model.propeller)
     of = ["rpm" if trim == "thrust" else "thrust", "torque", "efficiency", "oaspl_db"]
-    assert_totals(prob, of, scales)
+    assert_totals(prob, of, wrt)

@@ -1,0 +1,91 @@
+"""What the docstrings of components say they take and give is what they declare."""
+
+import inspect
+import re
+
+import openmdao.api as om
+import pytest
+from openmdao.core.system import System
+
+from propmdao import components
+from propmdao.acoustics.kinematics.observers import arc
+
+OBSERVERS = arc(1.905, [-45.0, 0.0])
+#: Sections of a docstring, as numpydoc underlines them.
+SECTION = re.compile(r"^(\w+)\n-+\n(.*?)(?=\n\n\w+\n-+\n|\Z)", re.M | re.S)
+#: Line of names, at the margin: "rpm, speed : float".
+NAMES = re.compile(r"^(\w+(?:, \w+)*)(?: :.*)?$", re.M)
+#: Reference to other components: "The other inputs are those of `AerodynamicsComp` without `rpm`."
+REFERENCE = re.compile(r"^The other \w+ are those of ([^.]+?)(?:\s+without\s+([^.]+))?\.$", re.M)
+
+
+def described(component, section):
+    """Names in a section of the docstring, with those of the components that it refers to."""
+    (text,) = (body for name, body in SECTION.findall(inspect.getdoc(component)) if name == section)
+    names = {name for line in NAMES.findall(text) for name in line.split(", ")}
+    for others, exceptions in REFERENCE.findall(text):
+        for other in re.findall(r"`(\w+)`", others):
+            names |= described(getattr(components, other), section)
+        names -= set(re.findall(r"`(\w+)`", exceptions))
+    return names
+
+
+@pytest.fixture
+def systems(propeller, small, polars):
+    """Systems of a class with options that differ in what they declare."""
+    lattice = {"n_blades": 2, "fidelity": small}
+    noise = {"observers": OBSERVERS, "fidelity": small}
+    both = [lattice, {**lattice, "polars": polars}]
+    geometry = {"propeller": propeller, "fidelity": small}
+    options = {
+        "GeometryComp": [
+            {**geometry, "polars": polars},
+            {**geometry, "camber": "design_lift_coefficient"},
+        ],
+        "AerodynamicsComp": both,
+        "TrimmedAerodynamicsComp": both,
+        "RotationSpeedComp": both,
+        "AcousticsComp": [{**noise, "n_blades": 2, "n_loads": 3}],
+        "BroadbandComp": [{**noise, "propeller": propeller}],
+        "NoiseObjectiveComp": [{"shape": 3}],
+        "PropellerGroup": [
+            {**noise, "propeller": propeller, "broadband": True},
+            {**geometry, "trim": "rpm", "camber": "design_lift_coefficient"},
+            {**geometry, "trim_method": "two_point", "viscous": False},
+        ],
+    }
+
+    def systems(name):
+        made = [getattr(components, name)(**chosen) for chosen in options[name]]
+        for system in made:
+            prob = om.Problem(reports=False)
+            prob.model.add_subsystem("system", system)
+            prob.setup()
+            prob.final_setup()
+        return made
+
+    return systems
+
+
+def names_of(system):
+    """Promoted names of inputs and outputs of a system; no input that an output of its feeds."""
+    inputs, outputs = (
+        {meta["prom_name"] for meta in system.get_io_metadata(iotypes=iotype).values()}
+        for iotype in ("input", "output")
+    )
+    return inputs - outputs, outputs
+
+
+SYSTEMS = sorted(
+    name for name in components.__all__ if issubclass(getattr(components, name), System)
+)
+
+
+@pytest.mark.parametrize("name", SYSTEMS)
+def test_inputs_outputs_and_options_are_those_that_are_described(systems, name):
+    component, made = getattr(components, name), systems(name)
+    inputs, outputs = (set().union(*names) for names in zip(*map(names_of, made), strict=True))
+    assert described(component, "Inputs") == inputs
+    assert described(component, "Outputs") == outputs
+    inherited = set(om.ExplicitComponent().options) | set(om.Group().options)
+    assert described(component, "Options") == set(made[0].options) - inherited
