@@ -166,11 +166,9 @@ def test_flights_that_are_none(wrong, message):
 
 
 def test_flyovers_that_are_none(found):
+    hovering = with_records(found, point=OperatingPoint(rpm=4200.0))
     for changed, message in (
-        (
-            with_records(found, point=OperatingPoint(rpm=4200.0)),
-            "speed of a flyover must be positive",
-        ),
+        (hovering, "speed of a flyover must be positive"),
         (dataclasses.replace(found, rpm=0.0), "rpm of a flyover must be positive"),
     ):
         with pytest.raises(ValueError, match=message):

@@ -17,24 +17,28 @@ from propmdao.acoustics.broadband.rotor import rotor_self_noise
 from propmdao.acoustics.broadband.self_noise import third_octave_centers
 from propmdao.acoustics.kinematics.observers import arc
 from propmdao.acoustics.levels.decibels import level_db
-from propmdao.aerodynamics.sections.laws import AIR_VISCOSITY
 from propmdao.analysis.self_noise import BANDS_HZ, strip_flow
-from propmdao.analysis.single_point import SOUND_SPEED, analyze
+from propmdao.analysis.single_point import analyze
 from propmdao.formats.propellers import load_propeller
 from propmdao.geometry.blade import Blade
 from propmdao.geometry.lattice import strip_interpolation
+from propmdao.records.air import Air
 from propmdao.records.fidelity import Fidelity
+from propmdao.records.models import SelfNoiseModel
+from propmdao.records.states import RotorState
+from propmdao.records.units import RAD_PER_S
 
 DENSITY, RPM, DISTANCE = 1.18, 4200.0, 1.905
 ELEVATIONS = (-45.0, -22.5)
+OBSERVERS = arc(DISTANCE, ELEVATIONS)
+STATE = RotorState(RPM * RAD_PER_S, 0.0, Air(density=DENSITY))
 BANDS = third_octave_centers(500, 10e3)
 
 
 @pytest.fixture(scope="module")
 def hover():
-    observers = [(DISTANCE, elevation) for elevation in ELEVATIONS]
     propeller = load_propeller("apcsf_11x4.7")
-    return analyze(propeller, rpm=RPM, density=DENSITY, broadband=True, observers=observers)
+    return analyze(propeller, rpm=RPM, density=DENSITY, broadband=True, observers=OBSERVERS)
 
 
 @pytest.fixture(scope="module")
@@ -67,10 +71,9 @@ def measured(reference_data):
 
 def test_third_octaves_with_the_thrust_of_the_wind_tunnel(measured):
     # One twist offset, fitted to the wind tunnel's static thrust and to no noise.
-    observers = [(DISTANCE, elevation) for elevation in ELEVATIONS]
     turned = analyze(
         load_propeller("apcsf_11x4.7"), rpm=RPM, density=DENSITY, broadband=True,
-        observers=observers, twist_offset_deg=2.25,
+        observers=OBSERVERS, twist_offset_deg=2.25,
     )  # fmt: skip
     assert 0.97 < float(turned.loads.thrust) / 4.037 < 1.02
     heard = np.asarray(level_db(turned.broadband.total))
@@ -84,10 +87,8 @@ def of_strips(strips, angle=0.0, trip="none"):
     """Levels with every angle from zero lift changed by so much [rad]."""
     section = strips.section
     section = dataclasses.replace(section, angle_of_attack=section.angle_of_attack + angle)
-    heard = rotor_self_noise(
-        dataclasses.replace(strips, section=section), 2, RPM * np.pi / 30, 0.0, SOUND_SPEED,
-        AIR_VISCOSITY / DENSITY, arc(DISTANCE, ELEVATIONS), BANDS, trip=trip,
-    )  # fmt: skip
+    strips = dataclasses.replace(strips, section=section)
+    heard = rotor_self_noise(strips, 2, STATE, OBSERVERS, BANDS, SelfNoiseModel(trip))
     return np.asarray(level_db(heard.total))
 
 

@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from propmdao.acoustics.kinematics.observers import arc
 from propmdao.analysis.single_point import analyze
 from propmdao.analysis.wind_tunnel import read_wind_tunnel
 from propmdao.formats.propellers import load_propeller
@@ -21,7 +22,7 @@ THESIS = load_propeller("apcsf_11x4.7_thesis")
 NACA_4412 = dataclasses.replace(
     SLOW_FLYER, airfoils=((0.15, "naca4412"),), thickness_over_chord=None
 )
-MICROPHONE = [(1.905, -45.0)]
+MICROPHONE = arc(1.905, [-45.0])
 
 
 def at_4003_rpm(j, **settings):
@@ -56,10 +57,10 @@ def test_power_is_above_that_of_the_ideal_disk(j, inviscid, viscous):
         0.5 * 1.225 * np.pi * SLOW_FLYER.diameter**2,
     )
     for expected, with_drag in ((inviscid, False), (viscous, True)):
-        of = at_4003_rpm(j, viscous=with_drag)
-        w = -0.5 * speed + np.sqrt(0.25 * speed**2 + of["thrust"] / disk)
-        ideal = of["thrust"] * (speed + w)
-        assert of["shaft_power"] / ideal == pytest.approx(expected, abs=0.02)
+        result = at_4003_rpm(j, viscous=with_drag)
+        w = -0.5 * speed + np.sqrt(0.25 * speed**2 + result["thrust"] / disk)
+        ideal = result["thrust"] * (speed + w)
+        assert result["shaft_power"] / ideal == pytest.approx(expected, abs=0.02)
 
 
 def test_thesis_design_point_on_its_sections():

@@ -20,7 +20,9 @@ from propmdao.formats.propellers import load_propeller
 pytestmark = [
     pytest.mark.validation,
     # The electric propeller's root is thicker than the polars reach.
-    pytest.mark.filterwarnings("ignore::propmdao.aerodynamics.sections.polars.PolarRangeWarning"),
+    pytest.mark.filterwarnings(
+        "ignore::propmdao.aerodynamics.sections.polars.table.PolarRangeWarning"
+    ),
 ]
 
 MEASURED = Path(__file__).parents[2] / "studies" / "measurements"
