@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import openmdao.api as om
 
-from propmdao.acoustics.kinematics.observers import arc
+import propmdao as pm
 from propmdao.components import PropellerGroup
-from propmdao.formats.propellers import load_propeller
 
 
 def low_noise() -> om.Problem:
@@ -16,8 +15,8 @@ def low_noise() -> om.Problem:
     prob.model.add_subsystem(
         "propeller",
         PropellerGroup(
-            propeller=load_propeller("apcsf_11x4.7"),
-            observers=arc(1.905, -45.0),
+            propeller="apcsf_11x4.7",
+            observers=pm.arc(1.905, -45.0),
             design_distributions={"beta": three_points, "chord_over_R": three_points},
             rpm_bounds=(3000.0, 6000.0),
         ),

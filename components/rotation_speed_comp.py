@@ -28,10 +28,10 @@ from propmdao.records.units import RAD_PER_S
 class RotationSpeedComp(NodesComp):
     """Rotation speed at which the thrust, linear between two rotation speeds, is the required one.
 
-    The rule of the thesis. It misses the thrust required by some per cent and is there to show by
-    how much; `TrimmedAerodynamicsComp` does not. With `num_nodes` everything but the blade,
-    `lattice_nodes`, `diameter` and `section_polars`, has a leading axis of that many operating
-    points.
+    The rule of the thesis. Between bounds as near as its 4000 and 5000 rpm it misses the thrust
+    required by some per cent, and it is there to show by how much; `TrimmedAerodynamicsComp` does
+    not miss it. With `num_nodes` everything but the blade, `lattice_nodes`, `diameter` and
+    `section_polars`, has a leading axis of that many operating points.
 
     Inputs
     ------
@@ -49,7 +49,7 @@ class RotationSpeedComp(NodesComp):
     -------
     rpm_bounds : (float, float) or None
         The two rotation speeds at which the thrust is computed [rpm]; None (default): the bounds
-        of `TrimmedAerodynamicsComp`.
+        of `TrimmedAerodynamicsComp`, which are too far apart for this rule.
 
     The other options are those of `AerodynamicsComp` without `loads`.
 
