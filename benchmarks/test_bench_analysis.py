@@ -1,4 +1,4 @@
-"""What an analysis costs: whole, parts, the kernel against its floor, and from a cold start.
+"""Cost of an analysis: whole, parts, the kernel against its floor, and from a cold start.
 
 The targets, on two cores and after compilation: 0.2 s with one microphone, 0.5 s with nine, half of
 that wished for; `propmdao analyze` 15 s from a cold process, 5 s with compiled code kept.
