@@ -1,4 +1,4 @@
-"""What benchmarks share: the models that workers build."""
+"""Fixtures of the benchmarks: the models that workers build."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What an analysis costs: whole, parts, the kernel against its floor, and from a cold start.
+"""Cost of an analysis: whole, parts, the kernel against its floor, and from a cold start.
 
 The targets, on two cores and after compilation: 0.2 s with one microphone, 0.5 s with nine, half of
 that wished for; `propmdao analyze` 15 s from a cold process, 5 s with compiled code kept.
@@ -15,29 +15,31 @@ import jax.numpy as jnp
 import numpy as np
 import pytest
 
+import propmdao as pm
+from propmdao.aerodynamics.rotor_geometry import RotorGeometry
 from propmdao.aerodynamics.sections.laws import viscous_sections
 from propmdao.aerodynamics.sections.polars.propeller_polars import polars_for
-from propmdao.aerodynamics.solutions.axial import WAKE_AGES, solve_steady
-from propmdao.aerodynamics.trim import solve_rotation_speed
+from propmdao.aerodynamics.solutions import axial
+from propmdao.aerodynamics.solutions.case import RotorCase
+from propmdao.aerodynamics.trim import Bounds, solve_for_thrust
 from propmdao.aerodynamics.vortices.biot_savart import filament_velocities
-from propmdao.analysis.single_point import analyze
-from propmdao.formats.propellers import load_propeller
+from propmdao.aerodynamics.wakes.helical import wake_transport
 from propmdao.geometry.blade import Blade
 from propmdao.geometry.lattice import (
     lattice_interpolation,
     lattice_nodes,
     strip_interpolation,
 )
-from propmdao.records.fidelity import Fidelity
+from propmdao.records.states import RotorState
 
-SLOW_FLYER = load_propeller("apcsf_11x4.7")
-NINE = [(1.905, float(elevation)) for elevation in np.linspace(-90.0, 90.0, 9)]
-RADIUS, SPEED, DENSITY, THRUST, OMEGA = 0.1397, 8.0, 1.225, 1.2, 422.0
+SLOW_FLYER = pm.load_propeller("apcsf_11x4.7")
+NINE = pm.arc(1.905, np.linspace(-90.0, 90.0, 9))
+THRUST, STATE = 1.2, RotorState(rotation_speed=422.0, speed=8.0, air=pm.Air())
 
 
 @pytest.fixture(scope="module")
 def nodes():
-    fidelity = Fidelity()
+    fidelity = pm.Fidelity()
     stations = SLOW_FLYER.r_over_R
     span = lattice_interpolation(stations, fidelity.n_spanwise)
     return lattice_nodes(Blade.from_propeller(SLOW_FLYER), span, fidelity.n_chordwise)
@@ -49,8 +51,14 @@ def sections(request):
     if request.param == "inviscid":
         return None
     stations = SLOW_FLYER.r_over_R
-    middle = strip_interpolation(stations, Fidelity().n_spanwise)
-    return viscous_sections(polars_for(SLOW_FLYER), Blade.from_propeller(SLOW_FLYER), middle, 340.0)
+    middle = strip_interpolation(stations, pm.Fidelity().n_spanwise)
+    return viscous_sections(polars_for(SLOW_FLYER), Blade.from_propeller(SLOW_FLYER), middle)
+
+
+def case_of(nodes, sections):
+    """Return the slow flyer on a lattice; without sections in inviscid flow."""
+    rotor = RotorGeometry(nodes, 0.5 * SLOW_FLYER.diameter, SLOW_FLYER.n_blades)
+    return RotorCase(rotor, STATE, sections)
 
 
 @pytest.mark.parametrize("broadband", [False, True], ids=["tones", "broadband"])
@@ -61,16 +69,17 @@ def test_full_evaluation(benchmark, observers, viscous, broadband):
     options = {"viscous": viscous, "broadband": broadband, "observers": observers}
 
     def evaluate():
-        analyze(SLOW_FLYER, thrust=THRUST, speed=SPEED, **options).to_dict()
+        pm.analyze(SLOW_FLYER, thrust=THRUST, speed=STATE.speed, **options).to_dict()
 
     benchmark.pedantic(evaluate, rounds=10, warmup_rounds=2)
 
 
 def test_steady_lattice(benchmark, nodes, sections):
     """Loads at a rotation speed, with their wake."""
+    case = case_of(nodes, sections)
 
     def solve():
-        jax.block_until_ready(solve_steady(nodes, 2, RADIUS, OMEGA, SPEED, DENSITY, sections))
+        jax.block_until_ready(axial.solve(case))
 
     benchmark.pedantic(solve, rounds=10, warmup_rounds=2)
 
@@ -84,7 +93,7 @@ def test_gradient(benchmark, nodes, sections):
     @jax.jit
     def differentiate(nodes, sections):
         def loads(nodes, sections):
-            solution = solve_steady(nodes, 2, RADIUS, OMEGA, SPEED, DENSITY, sections)
+            solution = axial.solve(case_of(nodes, sections))
             return jnp.stack([solution.thrust, solution.torque])
 
         _, pull = jax.vjp(loads, nodes, sections)
@@ -97,10 +106,10 @@ def test_gradient(benchmark, nodes, sections):
 
 def test_trim(benchmark, nodes, sections):
     """Rotation speed for a thrust."""
-    required = SPEED, DENSITY, THRUST, 366.0, 576.0
+    case, bounds = case_of(nodes, sections), Bounds(366.0, 576.0)
 
     def solve():
-        jax.block_until_ready(solve_rotation_speed(nodes, 2, RADIUS, *required, sections))
+        jax.block_until_ready(solve_for_thrust(axial, case, THRUST, bounds))
 
     benchmark.pedantic(solve, rounds=10, warmup_rounds=2)
 
@@ -110,12 +119,12 @@ def test_wake_kernel(benchmark):
 
     The floor is 1.2 ns a pair, 2.7 ms: C on an idle two-core machine with AVX-512.
     """
-    rng = np.random.default_rng(0)
+    rng, n_nodes = np.random.default_rng(0), wake_transport().ages.size
     points = jnp.asarray(rng.normal(size=(584, 3)))
-    wake = jnp.asarray(rng.normal(size=(25, 2, WAKE_AGES.size, 3)))
-    core = jnp.full(WAKE_AGES.size - 1, 1e-2)
+    wake = jnp.asarray(rng.normal(size=(25, 2, n_nodes, 3)))
+    core = jnp.full(n_nodes - 1, 1e-2)
     kernel = jax.jit(filament_velocities)
-    benchmark.extra_info["pairs"] = 584 * 25 * 2 * (WAKE_AGES.size - 1)
+    benchmark.extra_info["pairs"] = 584 * 25 * 2 * (n_nodes - 1)
     benchmark.pedantic(
         lambda: jax.block_until_ready(kernel(points, wake, core)), rounds=20, warmup_rounds=2
     )

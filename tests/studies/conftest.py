@@ -1,4 +1,4 @@
-"""What tests of the studies share: scripts imported as when they are run, coarse meshes."""
+"""Fixtures of the studies' tests: scripts imported as when they are run, coarse meshes."""
 
 from __future__ import annotations
 
