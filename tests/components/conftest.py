@@ -16,7 +16,7 @@ from propmdao.records.quantities import ASKED
 SCALES = {
     "rpm": 5.0,
     "thrust_required": 0.01,
-    "speed": 0.1,
+    "speed": 0.03,
     "density": 1e-2,
     "sound_speed": 1.0,
     "diameter": 1e-3,
