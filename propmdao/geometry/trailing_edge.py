@@ -4,9 +4,25 @@ from __future__ import annotations
 
 import jax
 import jax.numpy as jnp
+import numpy as np
+import numpy.typing as npt
 
 from propmdao.geometry.blade import Blade, SpanInterpolation
 from propmdao.propeller.airfoils.airfoil import CHORD_FRACTION
+
+# The angle of Brooks, Pope and Marcolini is that of the surfaces upstream of the trailing edge
+# (NASA RP-1218, figure 3). The last per cent of chord is where scanned and moulded blades are
+# rounded, and where a spline through a sharp edge overshoots.
+_SLOPING_PART = 0.945, 0.992
+
+
+def _slope_weights() -> npt.NDArray[np.float64]:
+    """Weights of the thickness on the shared grid that give its slope over the sloping part."""
+    first, last = _SLOPING_PART
+    x = np.where((first < CHORD_FRACTION) & (last > CHORD_FRACTION), CHORD_FRACTION, np.nan)
+    deviation = np.nan_to_num(x - np.nanmean(x))
+    weights: npt.NDArray[np.float64] = deviation / np.sum(deviation**2)
+    return weights
 
 
 def trailing_edge(blade: Blade, span: SpanInterpolation) -> tuple[jax.Array, jax.Array]:
@@ -22,10 +38,12 @@ def trailing_edge(blade: Blade, span: SpanInterpolation) -> tuple[jax.Array, jax
     Returns
     -------
     thickness_over_chord : (n,) array
-        Thickness of the blunt edge over chord, 0 where the sections are sharp.
+        Thickness of the blunt edge over chord, 0 where the sections are sharp or rounded.
     angle : (n,) array
-        Angle between upper and lower surface at the edge [rad].
+        Angle between upper and lower surface ahead of the edge [rad]: of a straight line through
+        the thickness from 0.945 to 0.992 of the chord; negative where it grows toward the edge.
     """
     maximum = span.linear @ blade.thickness_over_chord
-    before, edge = ((span.linear @ blade.thickness_shape[:, k]) * maximum for k in (-2, -1))
-    return edge, jnp.arctan((before - edge) / (1.0 - CHORD_FRACTION[-2]))
+    edge = (span.linear @ blade.thickness_shape[:, -1]) * maximum
+    slope = (span.linear @ (blade.thickness_shape @ _slope_weights())) * maximum
+    return edge, 2.0 * jnp.arctan(-0.5 * slope)

@@ -17,6 +17,7 @@ from propmdao.formats.propellers import load_propeller
 from propmdao.geometry.blade import Blade
 from propmdao.geometry.lattice import strip_interpolation
 from propmdao.geometry.trailing_edge import trailing_edge
+from propmdao.propeller.description import Propeller
 from propmdao.records.fidelity import Fidelity
 from propmdao.records.quantities import BROADBAND_LEVELS, LEVELS
 
@@ -159,3 +160,29 @@ def test_noise_rises_with_about_the_fifth_power_of_speed(cruise):
     faster = run(1.2 * 4200.0, 1.2 * 5.0).to_dict()["observers"][0]["oaspl_broadband_db"]
     slower = cruise.to_dict()["observers"][0]["oaspl_broadband_db"]
     assert 4.0 < (faster - slower) / (10 * np.log10(1.2)) < 6.0
+
+
+def test_a_root_as_thick_as_half_its_chord_is_finite():
+    """The angle of its trailing edge, 61 deg, is far beyond the report's formulas of bluntness."""
+
+    def level(root):
+        thickness = np.array([root, 0.20, 0.12, 0.10])
+        blade = Propeller(
+            name="thick root",
+            diameter=0.30,
+            n_blades=2,
+            r_over_R=np.array([0.15, 0.30, 0.60, 1.0]),
+            c_over_R=np.array([0.12, 0.20, 0.18, 0.05]),
+            beta_deg=np.array([30.0, 22.0, 14.0, 9.0]),
+            airfoils=[(0.15, "naca4412")],
+            thickness_over_chord=thickness,
+        )
+        with pytest.warns(UserWarning, match="outside the polars"):
+            result = analyze(
+                blade, rpm=5000.0, broadband=True, observers=arc(1.9, -45.0), fidelity=COARSE
+            )
+        return result.to_dict()["observers"][0]["oaspl_broadband_db"]
+
+    thin, thick = level(0.45), level(0.50)
+    assert thick == pytest.approx(65.3, abs=0.5)
+    assert thick == pytest.approx(thin, abs=0.05)

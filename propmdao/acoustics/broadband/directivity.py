@@ -6,9 +6,12 @@ import jax.numpy as jnp
 from jax import Array
 from jax.typing import ArrayLike
 
+from propmdao.acoustics.broadband.smooth import at_least
 from propmdao.records.pytrees import record
 
 _CONVECTION = 0.8  # eddies convect at this share of the flow's Mach number
+# Of an observer ahead of a section near the speed of sound; the report measured up to Mach 0.21.
+_LEAST_CONVECTION = 0.01
 _ON_THE_EDGE = 1e-12  # of the squared distance: an observer straight ahead has no angle phi
 
 
@@ -55,8 +58,8 @@ def radiation(
     r2 = x * x + across
     cos_theta = x / jnp.sqrt(r2)
     sin2_phi = z * z / (across + _ON_THE_EDGE * r2)
-    moving = 1 + mach * cos_theta
-    sliding = 1 + (1 - _CONVECTION) * mach * cos_theta
+    moving = at_least(1 + mach * cos_theta, _LEAST_CONVECTION)
+    sliding = at_least(1 + (1 - _CONVECTION) * mach * cos_theta, _LEAST_CONVECTION)
     return Radiation(
         high=(1 - cos_theta) * sin2_phi / (moving * sliding**2 * r2),  # 2 sin^2(theta / 2)
         low=(z * z / r2) / (moving**4 * r2),  # sin^2 theta sin^2 phi = z^2 / r^2

@@ -19,11 +19,16 @@ from propmdao.acoustics.broadband.boundary_layer import BoundaryLayer, boundary_
 from propmdao.acoustics.broadband.directivity import radiation
 from propmdao.acoustics.broadband.section import Section
 from propmdao.acoustics.broadband.self_noise import SelfNoise, tip_noise, trailing_edge_noise
+from propmdao.acoustics.broadband.smooth import at_least
 from propmdao.acoustics.kinematics.emission import emission_distance
 from propmdao.records.models import SelfNoiseModel
 from propmdao.records.pytrees import record
 from propmdao.records.states import RotorState
 from propmdao.runtime.compilation import compiled
+
+# The corner of a trailing edge lies farther out than the tip and may move faster than sound where
+# the tip does not: what it emits toward the observer is heard at once, but not before.
+_LEAST_STRETCH = 0.01
 
 
 @record
@@ -161,4 +166,4 @@ def _emission(
     # Mach number of the rotation
     towards = state.rotation_speed * (x * sy - y * sx) / (state.air.sound_speed * d)
     axial = m * rz / d
-    return (sx, sy, rz), (1 - towards - axial) / (1 - axial)
+    return (sx, sy, rz), at_least((1 - towards - axial) / (1 - axial), _LEAST_STRETCH)

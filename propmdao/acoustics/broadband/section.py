@@ -108,7 +108,7 @@ class BluntStrip(NamedTuple):
     wedge, plate : BluntCurve
         Spectral curves of Psi = 14 and 0 deg, between which the trailing edge lies.
     edge_degrees : array
-        Angle Psi between the surfaces at the trailing edge [deg].
+        Angle Psi between the surfaces at the trailing edge, within the model's bounds [deg].
     """
 
     level: Array
@@ -207,7 +207,7 @@ def blunt_strip(section: Section, layer: BoundaryLayer) -> BluntStrip:
     """
     h = section.trailing_edge_thickness + _SHARP * nonzero_chord(section.chord)
     ratio = 2 * h / (layer.displacement_pressure + layer.displacement_suction)  # 73
-    edge_degrees = jnp.rad2deg(section.trailing_edge_angle)
+    edge_degrees = shedding_spectra.bounded_edge_angle(jnp.rad2deg(section.trailing_edge_angle))
     peak = shedding_spectra.blunt_strouhal_peak(ratio, edge_degrees)
     return BluntStrip(
         level=shedding_spectra.blunt_level(ratio, edge_degrees) + 10 * jnp.log10(h),

@@ -17,6 +17,9 @@ from propmdao.acoustics.broadband.smooth import ramp, smooth_step
 _LOG_CORNER = 0.01
 _RATIO_CORNER = 0.01  # of h / delta*
 _SHARE_CORNER = 0.05  # of the level at which a shape is bounded
+_LARGEST_ANGLE, _ANGLE_CORNER = 30.0, 10.0  # of a trailing edge [deg]
+_PLATE_CORNER = 2.0  # of the same [deg]
+_LARGEST_RATIO = 2.0  # h / delta*, far above 1.2, where the curves stop changing
 
 
 def laminar_shape(x: Array) -> Array:
@@ -97,6 +100,27 @@ def laminar_strouhal_peak(log_reynolds: Array, degrees: Array) -> Array:
     return jnp.log10(0.18) + 0.3931 * rise - 0.04 * degrees
 
 
+def bounded_edge_angle(edge_degrees: Array) -> Array:
+    """Trailing-edge angle as far as the formulas of bluntness noise go.
+
+    The report measured 0 and 14 deg and interpolates linearly between them. Beyond, its lines are
+    continued, but not for ever: the peak Strouhal number would be zero at 39 deg for a thin edge.
+
+    Parameters
+    ----------
+    edge_degrees : array
+        Angle between the surfaces at the trailing edge, Psi [deg].
+
+    Returns
+    -------
+    array
+        Angle [deg], the same from 0 to 20, then bending smoothly toward 30, and toward -2 where
+        the thickness grows toward the edge.
+    """
+    from_above = _LARGEST_ANGLE - ramp(_LARGEST_ANGLE - edge_degrees, _ANGLE_CORNER)
+    return ramp(from_above + _PLATE_CORNER, _PLATE_CORNER) - _PLATE_CORNER
+
+
 def blunt_strouhal_peak(ratio: Array, edge_degrees: Array) -> Array:
     """Peak Strouhal number St''' (equation 72).
 
@@ -105,12 +129,12 @@ def blunt_strouhal_peak(ratio: Array, edge_degrees: Array) -> Array:
     ratio : array
         Trailing-edge thickness over the mean displacement thickness, h / delta*.
     edge_degrees : array
-        Angle between the surfaces at the trailing edge, Psi [deg].
+        Angle between the surfaces at the trailing edge, Psi, from `bounded_edge_angle` [deg].
 
     Returns
     -------
     array
-        Peak Strouhal number St'''_peak.
+        Peak Strouhal number St'''_peak, positive.
     """
     inverse = 1 / jnp.maximum(ratio, 0.15)  # not used below 0.19
     thick = (0.212 - 0.0045 * edge_degrees) / (1 + 0.235 * inverse - 0.0132 * inverse**2)
@@ -167,7 +191,9 @@ def blunt_curve(ratio: Array) -> BluntCurve:
     """
     # One ramp over all corners: (corners, ...) is a tenth of the code that eight of them make.
     corners = jnp.array([1.35 / 68.724, 0.25, 0.5, 0.62, 1.15, 1.2])
-    bend = ramp(jnp.asarray(ratio)[..., None] - corners, _RATIO_CORNER)
+    # Large ratios would leave of the bends, which cancel there, what rounding leaves.
+    within = jnp.minimum(ratio, _LARGEST_RATIO)
+    bend = ramp(within[..., None] - corners, _RATIO_CORNER)
     mu = 0.1211 + bend @ jnp.array([0.0, -0.2175, 0.0, 0.2175 - 0.0308, 0.0308, 0.0])
     m = bend @ jnp.array(
         [68.724, 0.0, 308.475 - 68.724, 224.811 - 308.475, 1583.28 - 224.811, -1583.28]

@@ -32,6 +32,24 @@ def ramp(x: ArrayLike, half_width: ArrayLike) -> Array:
     return (inside + w) ** 2 / (4 * w) + jnp.maximum(x - w, 0.0)
 
 
+def at_least(x: ArrayLike, least: float) -> Array:
+    """Values that a logarithm or a denominator can take, of what is positive but for its limits.
+
+    Parameters
+    ----------
+    x : array
+        Values of any shape.
+    least : float
+        Smallest value that comes out, positive.
+
+    Returns
+    -------
+    array
+        Values of the same shape; those above ``2 * least`` are as they were.
+    """
+    return least + ramp(jnp.asarray(x) - least, least)
+
+
 def smooth_abs(x: ArrayLike, half_width: float) -> Array:
     """``abs(x)`` with its corner replaced by a parabola, half of `half_width` at zero.
 

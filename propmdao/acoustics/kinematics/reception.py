@@ -58,6 +58,32 @@ def observer_clock(times: ArrayLike) -> tuple[NDArray[np.float64], float]:
     return clock, step
 
 
+def require_slower_than_sound(observers: Observers, sound_speed: float) -> float:
+    """Refuse observers at the speed of sound or faster: sound would never catch up with them.
+
+    Parameters
+    ----------
+    observers : Observers
+        Observers at rest or in uniform motion.
+    sound_speed : float
+        Speed of sound [m/s].
+
+    Returns
+    -------
+    float
+        Mach number of the observers.
+
+    Raises
+    ------
+    ValueError
+        If the Mach number is not below 1.
+    """
+    mach = float(np.linalg.norm(np.asarray(observers.velocity, float))) / sound_speed
+    if not mach < 1:
+        raise ValueError(f"observers must be slower than sound; their Mach number is {mach:.3f}")
+    return mach
+
+
 def source_times(
     motion: Motion,
     points: ArrayLike,
@@ -95,7 +121,7 @@ def source_times(
     Raises
     ------
     ValueError
-        If points move at the speed of sound or faster, or the step is not positive.
+        If points or observers move at the speed of sound or faster, or the step is not positive.
     """
     clock = np.asarray(times, np.float64)
     x = np.asarray(points, np.float64).reshape(-1, 3)
@@ -105,9 +131,13 @@ def source_times(
     # A step of the record's length would be interpolated from what is heard long before and after.
     step = min(step, float(clock[-1] - clock[0]))
     center = 0.5 * (x.min(axis=0) + x.max(axis=0))
-    # Every point is heard within radius / c of the centre, whatever the motion.
-    margin = float(np.linalg.norm(x - center, axis=1).max()) / sound_speed
     start, velocity = np.asarray(observers.position, float), np.asarray(observers.velocity, float)
+    observer_mach = require_slower_than_sound(observers, sound_speed)
+    # What is emitted at one time is heard at t - |x + v t - y| / c = tau. The left side grows at
+    # least by 1 - M_observer per second, so that a point that is r away from the centre is heard
+    # within r / (c (1 - M_observer)) of it, whatever the motion.
+    radius = float(np.linalg.norm(x - center, axis=1).max())
+    margin = radius / (sound_speed * (1 - observer_mach))
 
     def distance(tau: float, t: float) -> NDArray[np.float64]:
         pose = poses(motion, np.array([tau]))

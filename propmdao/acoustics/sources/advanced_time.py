@@ -15,7 +15,12 @@ from jax import Array
 from numpy.typing import ArrayLike
 
 from propmdao.acoustics.kinematics.motion import Motion, Poses, poses
-from propmdao.acoustics.kinematics.reception import Observers, observer_clock, sum_on_clock
+from propmdao.acoustics.kinematics.reception import (
+    Observers,
+    observer_clock,
+    require_slower_than_sound,
+    sum_on_clock,
+)
 from propmdao.acoustics.sources.kernels import TONAL_SOURCES, Kernel, emission
 from propmdao.acoustics.sources.moving_sources import Sources, UnsteadySources, frame_sources
 from propmdao.records.air import Air
@@ -86,9 +91,7 @@ def source_history(
     lengths = {a.shape[2] for a in (*in_frame.position, *in_frame.vector)} - {1, tau.size}
     if lengths:
         raise ValueError(f"sources are given at {lengths.pop()} times; there are {tau.size}")
-    mach = float(np.linalg.norm(observers.velocity) / air.sound_speed)
-    if not mach < 1:
-        raise ValueError(f"observers must be slower than sound; their Mach number is {mach:.3f}")
+    mach = require_slower_than_sound(observers, float(air.sound_speed))
     source = TONAL_SOURCES[name]
     # dt/dtau = (1 - M_r) / (1 - M_observer,r) is below 2 / (1 - M_observer)
     each = int(np.ceil(2 * np.diff(tau).max() / (1 - mach) / step))

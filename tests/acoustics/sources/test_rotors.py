@@ -82,6 +82,24 @@ def test_marching_and_tones_of_unequal_blades_on_a_tilted_shaft(rotor, velocity)
     agree(rotor, velocity, 12)
 
 
+@pytest.mark.parametrize("mach", [0.2, 0.6])
+@pytest.mark.parametrize("n", [512, 1024, 2048, 4096])
+def test_records_of_observers_that_fly_along_are_complete(rotor, mach, n):
+    """All blades are heard over all of the record, however fine it is and wherever it is taken."""
+    velocity = (mach * C, 0.0, 0.0)
+    slow = dataclasses.replace(rotor, panels=None, rotation_speed=440.0)
+    places = arc(1.905, [-90.0, -45.0, 0.0, 45.0, 90.0]) * np.array([[1.0], [1], [1], [-1], [1]])
+    marched = rotor_histories(
+        [slow], flying(velocity, places), one_turn(slow, n), AIR, (translation(velocity=velocity),)
+    )
+    assert np.isfinite(marched.total).all() and marched.total.any(axis=1).all()
+
+
+def test_observers_as_fast_as_sound_are_refused(rotor):
+    with pytest.raises(ValueError, match=r"observers must be slower .* Mach number is 1.000"):
+        rotor_histories([rotor], flying((C, 0, 0)), one_turn(rotor), AIR)
+
+
 def test_marching_and_tones_with_unsteady_loads(rotor, periodic):
     agree(dataclasses.replace(rotor, loads=periodic), (30.0, 0.0, 10.0), 8)
 
