@@ -26,6 +26,9 @@ from propmdao.records.quantities import RESULTS
 from propmdao.records.states import RotorState
 from propmdao.records.units import RAD_PER_S
 
+#: Outputs of every rotor, by their name in the table of quantities.
+PERFORMANCE = tuple(name for name in RESULTS if name not in ("converged", "failure"))
+
 
 def n_loads(fidelity: Fidelity) -> int:
     """Return the number of point forces on a blade: bound and chordwise segments, sections."""
@@ -62,7 +65,9 @@ class AerodynamicsComp(NodesComp, RootComponent):
     thrust, torque, shaft_power : float
         Thrust, shaft torque and shaft power of all blades, ``N``, ``N*m``, ``W``.
     efficiency : float
-        Thrust times speed over shaft power, 0 in hover.
+        Thrust times speed over shaft power, 0 in hover; below 0, down to -1, for a brake.
+    figure_of_merit : float
+        Ideal power of hover over shaft power; below 0, down to -1, for negative thrust.
     J, CT, CQ, CP : float
         Advance ratio V / (n D) and coefficients per rho n^2 D^4, rho n^2 D^5, rho n^3 D^5, with n
         in revolutions per second.
@@ -111,7 +116,7 @@ class AerodynamicsComp(NodesComp, RootComponent):
         nc, ns = fidelity.n_chordwise, fidelity.n_spanwise
         self.constants = self.search_constants = add_rotor_inputs(self)
         self._add_rotation_speed()
-        for name in ("thrust", "torque", "shaft_power", "eta", "J", "CT", "CQ", "CP"):
+        for name in PERFORMANCE:
             quantity = RESULTS[name]
             self.add_point_output(
                 quantity.variable, units=quantity.unit or None, desc=quantity.meaning
@@ -186,6 +191,7 @@ def loads_outputs(loads: RotorLoads, state: RotorState, inputs: Arrays) -> Array
         "torque": loads.torque[None],
         "shaft_power": (loads.torque * state.rotation_speed)[None],
         "efficiency": numbers.eta[None],
+        "figure_of_merit": numbers.figure_of_merit[None],
         "J": numbers.J[None],
         "CT": numbers.CT[None],
         "CQ": numbers.CQ[None],

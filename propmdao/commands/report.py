@@ -154,7 +154,7 @@ def print_files(result: dict[str, Any]) -> None:
         print("Figures:", *result["figures"])
 
 
-def _operating_points(analyses: Iterable[dict[str, Any]]) -> Table:
+def _operating_points(analyses: Sequence[dict[str, Any]]) -> Table:
     table = _table()
     columns = {
         "rpm": ("rpm", ".1f"),
@@ -167,6 +167,9 @@ def _operating_points(analyses: Iterable[dict[str, Any]]) -> Table:
         "CP": ("CP", ".5f"),
         "eta": ("eta", ".3f"),
     }
+    if not analyses[0]["speed"]:  # eta is 0 in hover
+        del columns["eta"]
+        columns["figure_of_merit"] = ("figure\nof merit", ".3f")
     for heading, _ in columns.values():
         table.add_column(heading, justify="right")
     for analysis in analyses:
