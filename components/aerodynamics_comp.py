@@ -17,8 +17,8 @@ from propmdao.components.bases.root_component import RootComponent
 from propmdao.components.inputs.rotor_inputs import (
     RotorConstants,
     add_rotor_inputs,
+    check_rotor_inputs,
     declare_rotor,
-    require_diameter,
     rotor_at,
 )
 from propmdao.records.fidelity import Fidelity
@@ -102,8 +102,9 @@ class AerodynamicsComp(NodesComp, RootComponent):
     Raises
     ------
     om.AnalysisError
-        If the diameter is not positive, or the solution does not converge; the message has the
-        reason and, with `num_nodes`, the node.
+        If an input or a result is not finite, rotation or flight backwards, diameter or a property
+        of the air not positive, or the solution does not converge; the message has the reason and,
+        with `num_nodes`, the node.
     """
 
     def initialize(self) -> None:
@@ -131,6 +132,13 @@ class AerodynamicsComp(NodesComp, RootComponent):
         self.add_point_input("rpm", val=4000.0, units="rpm")
 
     def _add_loads(self, nc: int, ns: int, n: int) -> None:
+        self.axes = {
+            "circulation": ("chordwise panel", "strip"),
+            "load_position": ("load",),
+            "load_force": ("load",),
+            "section_speed": ("strip",),
+            "section_lift_coefficient": ("strip",),
+        }
         self.add_point_output("circulation", shape=(nc, ns), units="m**2/s")
         self.add_point_output("load_position", shape=(n, 3), units="m")
         self.add_point_output("load_force", shape=(n, 3), units="N", desc="Force on the fluid.")
@@ -142,8 +150,12 @@ class AerodynamicsComp(NodesComp, RootComponent):
     def at_rest(self, inputs: Arrays) -> bool:
         return not inputs["rpm"].any()
 
+    def check_inputs(self, inputs: Arrays) -> None:
+        super().check_inputs(inputs)
+        check_rotor_inputs(inputs)
+
     def check(self, inputs: Any, values: Any) -> None:
-        require_diameter(inputs)
+        self.require_numbers(inputs, values)
         reason = failure(values["loads"])
         if reason:
             raise om.AnalysisError(

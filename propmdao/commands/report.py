@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterable, Sequence
 from typing import Any
 
@@ -220,4 +219,4 @@ def _level(value: float, form: str) -> str:
 
 def _format(value: float, form: str) -> str:
     # A zero that has a sign is still zero.
-    return format(value + 0.0, form) if math.isfinite(value) else "-"
+    return format(value + 0.0, form)

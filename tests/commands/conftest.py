@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import dataclasses
-import math
 import sys
 import types
 from collections.abc import Callable
@@ -48,7 +47,7 @@ class Answer:
             "failure": None,
             "observers": [
                 {"elevation_deg": elevation, "azimuth_deg": azimuth, "radius": radius, **levels}
-                | {"oaspl_thickness_db": -math.inf, "harmonics": [], "third_octave": []}
+                | {"oaspl_thickness_db": -200.0, "harmonics": [], "third_octave": []}
                 for radius, elevation, azimuth in zip(
                     *directions(asked.listening.observers).rounded(), strict=True
                 )

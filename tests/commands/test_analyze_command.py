@@ -125,7 +125,7 @@ def test_one_rpm_gives_an_object_of_strict_json(
     assert main(["analyze", PROPELLER, "--rpm", "4000", "--arc", "2", "0", "--json"]) == 0
     result = json.loads(capsys.readouterr().out, parse_constant=forbidden)
     assert result["rpm"] == 4000.0
-    assert result["observers"][0]["oaspl_thickness_db"] is None
+    assert result["observers"][0]["oaspl_thickness_db"] == -200.0
 
 
 def test_tables_say_what_is_left_out_and_fit_eighty_columns(
