@@ -65,7 +65,7 @@ def print_analyses(analyses: Sequence[dict[str, Any]]) -> None:
             console.print(TONES_ONLY)
     else:
         console.print("No observers: --arc RADIUS ELEVATION... adds their noise.\n")
-    _print_doubts(console, analyses)
+    print_doubts(analyses)
     print_files(first)
 
 
@@ -85,7 +85,7 @@ def print_flyover(result: dict[str, Any]) -> None:
         f"{result['rpm']:.1f} rpm, thrust {result['thrust']:.4g} N, speed"
         f" {result['speed']:.4g} m/s, {flight['height']:g} m above the ground",
     )
-    _print_doubts(console, [result])
+    print_doubts([result])
     table = _table()
     for heading in ("", "loudest\ndBA", "SEL\ndBA", "EPNL\nEPNdB"):
         table.add_column(heading, justify="right" if heading else "left")
@@ -122,8 +122,15 @@ def _print_propeller(console: Console, result: dict[str, Any], condition: str) -
         )
 
 
-def _print_doubts(console: Console, results: Sequence[dict[str, Any]]) -> None:
-    """Print what keeps numbers from being used."""
+def print_doubts(results: Sequence[dict[str, Any]]) -> None:
+    """Print what keeps numbers from being used.
+
+    Parameters
+    ----------
+    results : sequence of dict
+        Results of one propeller with the keys of ``propmdao analyze --json``.
+    """
+    console = Console()
     for result in results:
         if not result["converged"]:
             console.print(
