@@ -73,8 +73,9 @@ class AcousticsComp(NodesComp):
     Raises
     ------
     om.AnalysisError
-        If the blade tip is not slower than sound, or an observer not outside the rotor; with
-        `num_nodes` the message has the node.
+        If an input or a result is not finite, rotation or flight backwards, a property of the air
+        not positive, the blade tip not slower than sound, or an observer not outside the rotor;
+        with `num_nodes` the message has the node.
     ValueError
         If `observers` are no positions.
     """
@@ -104,8 +105,11 @@ class AcousticsComp(NodesComp):
         self.add_point_output("frequency", shape=(fidelity.n_harmonics,), units="Hz")
         self.function = _levels
         self.static = (self.options["n_blades"], fidelity.n_harmonics)
+        self.axes = dict.fromkeys(self.output_shapes(), ("observer", "harmonic"))
+        self.axes["frequency"] = ("harmonic",)
 
-    def check(self, inputs: Any, values: Any) -> None:
+    def check_inputs(self, inputs: Arrays) -> None:
+        super().check_inputs(inputs)
         check_rotor(inputs, "surface_nodes")
 
 

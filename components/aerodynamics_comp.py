@@ -17,14 +17,17 @@ from propmdao.components.bases.root_component import RootComponent
 from propmdao.components.inputs.rotor_inputs import (
     RotorConstants,
     add_rotor_inputs,
+    check_rotor_inputs,
     declare_rotor,
-    require_diameter,
     rotor_at,
 )
 from propmdao.records.fidelity import Fidelity
 from propmdao.records.quantities import RESULTS
 from propmdao.records.states import RotorState
 from propmdao.records.units import RAD_PER_S
+
+#: Outputs of every rotor, by their name in the table of quantities.
+PERFORMANCE = tuple(name for name in RESULTS if name not in ("converged", "failure"))
 
 
 def n_loads(fidelity: Fidelity) -> int:
@@ -62,7 +65,9 @@ class AerodynamicsComp(NodesComp, RootComponent):
     thrust, torque, shaft_power : float
         Thrust, shaft torque and shaft power of all blades, ``N``, ``N*m``, ``W``.
     efficiency : float
-        Thrust times speed over shaft power, 0 in hover.
+        Thrust times speed over shaft power, 0 in hover; below 0, down to -1, for a brake.
+    figure_of_merit : float
+        Ideal power of hover over shaft power; below 0, down to -1, for negative thrust.
     J, CT, CQ, CP : float
         Advance ratio V / (n D) and coefficients per rho n^2 D^4, rho n^2 D^5, rho n^3 D^5, with n
         in revolutions per second.
@@ -97,8 +102,9 @@ class AerodynamicsComp(NodesComp, RootComponent):
     Raises
     ------
     om.AnalysisError
-        If the diameter is not positive, or the solution does not converge; the message has the
-        reason and, with `num_nodes`, the node.
+        If an input or a result is not finite, rotation or flight backwards, diameter or a property
+        of the air not positive, or the solution does not converge; the message has the reason and,
+        with `num_nodes`, the node.
     """
 
     def initialize(self) -> None:
@@ -111,7 +117,7 @@ class AerodynamicsComp(NodesComp, RootComponent):
         nc, ns = fidelity.n_chordwise, fidelity.n_spanwise
         self.constants = self.search_constants = add_rotor_inputs(self)
         self._add_rotation_speed()
-        for name in ("thrust", "torque", "shaft_power", "eta", "J", "CT", "CQ", "CP"):
+        for name in PERFORMANCE:
             quantity = RESULTS[name]
             self.add_point_output(
                 quantity.variable, units=quantity.unit or None, desc=quantity.meaning
@@ -126,6 +132,13 @@ class AerodynamicsComp(NodesComp, RootComponent):
         self.add_point_input("rpm", val=4000.0, units="rpm")
 
     def _add_loads(self, nc: int, ns: int, n: int) -> None:
+        self.axes = {
+            "circulation": ("chordwise panel", "strip"),
+            "load_position": ("load",),
+            "load_force": ("load",),
+            "section_speed": ("strip",),
+            "section_lift_coefficient": ("strip",),
+        }
         self.add_point_output("circulation", shape=(nc, ns), units="m**2/s")
         self.add_point_output("load_position", shape=(n, 3), units="m")
         self.add_point_output("load_force", shape=(n, 3), units="N", desc="Force on the fluid.")
@@ -137,8 +150,12 @@ class AerodynamicsComp(NodesComp, RootComponent):
     def at_rest(self, inputs: Arrays) -> bool:
         return not inputs["rpm"].any()
 
+    def check_inputs(self, inputs: Arrays) -> None:
+        super().check_inputs(inputs)
+        check_rotor_inputs(inputs)
+
     def check(self, inputs: Any, values: Any) -> None:
-        require_diameter(inputs)
+        self.require_numbers(inputs, values)
         reason = failure(values["loads"])
         if reason:
             raise om.AnalysisError(
@@ -186,6 +203,7 @@ def loads_outputs(loads: RotorLoads, state: RotorState, inputs: Arrays) -> Array
         "torque": loads.torque[None],
         "shaft_power": (loads.torque * state.rotation_speed)[None],
         "efficiency": numbers.eta[None],
+        "figure_of_merit": numbers.figure_of_merit[None],
         "J": numbers.J[None],
         "CT": numbers.CT[None],
         "CQ": numbers.CQ[None],

@@ -90,8 +90,9 @@ class BroadbandComp(NodesComp):
     Raises
     ------
     om.AnalysisError
-        If the blade tip is not slower than sound, or an observer not outside the rotor; with
-        `num_nodes` the message has the node.
+        If an input or a result is not finite, rotation or flight backwards, a property of the air
+        not positive, the blade tip not slower than sound, or an observer not outside the rotor;
+        with `num_nodes` the message has the node.
     ValueError
         If `observers` are no positions.
     """
@@ -126,8 +127,12 @@ class BroadbandComp(NodesComp):
         self.function = _broadband
         self.static = int(propeller.n_blades), SelfNoiseModel(trip=self.options["trip"])
         self.constants = blade, strip_interpolation(stations, ns)
+        self.axes = dict.fromkeys(
+            self.output_shapes(), ("observer", [f"{frequency:g} Hz" for frequency in BANDS_HZ])
+        )
 
-    def check(self, inputs: Any, values: Any) -> None:
+    def check_inputs(self, inputs: Arrays) -> None:
+        super().check_inputs(inputs)
         check_rotor(inputs, "lattice_nodes")
 
 

@@ -108,8 +108,8 @@ class GeometryComp(JaxComponent):
     Raises
     ------
     om.AnalysisError
-        If the diameter or a chord is not positive, or a thickness not between 0 and 1 (splines can
-        overshoot).
+        If an input or a result is not finite, the diameter or a chord not positive, or a thickness
+        not between 0 and 1 (splines can overshoot).
     """
 
     def initialize(self) -> None:
@@ -145,7 +145,7 @@ class GeometryComp(JaxComponent):
             if name in outputs:
                 self.add_output(name, val=np.asarray(outputs[name]), units=units_of, desc=desc)
 
-    def check(self, inputs: Any, values: Any) -> None:
+    def check_inputs(self, inputs: Arrays) -> None:
         require_diameter(inputs)
         chord, thickness = inputs["chord_over_R"], inputs["thickness_over_chord"]
         for name, value, holds, rule in (
@@ -159,6 +159,7 @@ class GeometryComp(JaxComponent):
                 raise om.AnalysisError(
                     f"{name} must {rule}; station {station} (r/R {r:g}) has {value[station]:g}"
                 )
+        super().check_inputs(inputs)
 
 
 def _geometry(inputs: Arrays, constants: Any, static: Fidelity) -> Arrays:

@@ -9,6 +9,8 @@ import numpy.typing as npt
 import openmdao.api as om
 from scipy.special import logsumexp, softmax
 
+from propmdao.components.bases.refusals import require_numbers, require_real
+
 _PER_DB = np.log(10.0) / 10.0
 
 
@@ -63,6 +65,8 @@ class NoiseObjectiveComp(om.ExplicitComponent):
 
     Raises
     ------
+    om.AnalysisError
+        If a level is not finite.
     ValueError
         If the exponent is below 1.
     """
@@ -85,6 +89,8 @@ class NoiseObjectiveComp(om.ExplicitComponent):
         self.declare_partials("soft_maximum_db", "level_db")
 
     def compute(self, inputs: Any, outputs: Any) -> None:
+        require_real(self)
+        require_numbers("input ", inputs)
         outputs["soft_maximum_db"] = soft_maximum_db(inputs["level_db"], self.options["exponent"])
 
     def compute_partials(self, inputs: Any, partials: Any) -> None:

@@ -71,7 +71,7 @@ design_lift_coefficient : (n_stations,) arrays
     -------
     rpm : float
         Rotation speed, ``rpm``, with `trim` "thrust".
-    thrust, torque, shaft_power, efficiency, J, CT, CQ, CP : float
+    thrust, torque, shaft_power, efficiency, figure_of_merit, J, CT, CQ, CP : float
         Thrust, torque and power of all blades, ``N``, ``N*m``, ``W``, and the coefficients that
         `AerodynamicsComp` defines.
     spl_bpf_db, oaspl_db, oaspl_thickness_db, oaspl_loading_db, oaspl_dba : (n_observers,) arrays

@@ -12,8 +12,8 @@ from propmdao.components.bases.array_function import Arrays
 from propmdao.components.bases.nodes_comp import NodesComp
 from propmdao.components.inputs.rotor_inputs import (
     add_rotor_inputs,
+    check_rotor_inputs,
     declare_rotor,
-    require_diameter,
     rotor_at,
 )
 from propmdao.components.inputs.rpm_bounds import (
@@ -56,8 +56,9 @@ class RotationSpeedComp(NodesComp):
     Raises
     ------
     om.AnalysisError
-        If the diameter is not positive, the flight is too fast to trim, or the rotation speed is
-        not between the two; with `num_nodes` the message has the node.
+        If an input is not finite, flight backwards or too fast to trim, diameter or a property of
+        the air not positive, or the rotation speed not between the two; with `num_nodes` the
+        message has the node.
     ValueError
         If `rpm_bounds` are not positive and rising.
     """
@@ -77,8 +78,11 @@ class RotationSpeedComp(NodesComp):
     def at_rest(self, inputs: Arrays) -> bool:
         return not inputs["thrust_required"].any()
 
+    def check_inputs(self, inputs: Arrays) -> None:
+        super().check_inputs(inputs)
+        check_rotor_inputs(inputs)
+
     def check(self, inputs: Any, values: Any) -> None:
-        require_diameter(inputs)
         bounds = checked_bounds_at(inputs, fixed_bounds(self.options))
         low, high = float(bounds.low) / RAD_PER_S, float(bounds.high) / RAD_PER_S
         (rpm,) = values["rpm"]

@@ -11,7 +11,7 @@ from propmdao.aerodynamics.solutions.known_root import trimmed_at
 from propmdao.aerodynamics.trim import TrimError, require_reached, solve_for_thrust
 from propmdao.components.aerodynamics_comp import AerodynamicsComp, loads_outputs
 from propmdao.components.bases.array_function import Arrays
-from propmdao.components.inputs.rotor_inputs import RotorConstants, require_diameter, rotor_at
+from propmdao.components.inputs.rotor_inputs import RotorConstants, rotor_at
 from propmdao.components.inputs.rpm_bounds import (
     bounds_at,
     checked_bounds_at,
@@ -52,9 +52,10 @@ class TrimmedAerodynamicsComp(AerodynamicsComp):
     Raises
     ------
     om.AnalysisError
-        If the diameter is not positive, the flight is too fast to trim, the thrust is out of reach
-        between the bounds, or the solution does not converge; the message has the reason, the
-        thrust at both bounds and, with `num_nodes`, the node.
+        If an input or a result is not finite, flight backwards or too fast to trim, diameter or a
+        property of the air not positive, the thrust out of reach between the bounds, or the
+        solution does not converge; the message has the reason, the thrust at both bounds and, with
+        `num_nodes`, the node.
     ValueError
         If `rpm_bounds` are not positive and rising.
     """
@@ -78,7 +79,6 @@ class TrimmedAerodynamicsComp(AerodynamicsComp):
         return not inputs["thrust_required"].any()
 
     def check(self, inputs: Any, values: Any) -> None:
-        require_diameter(inputs)
         bounds = checked_bounds_at(inputs, fixed_bounds(self.options))
         case = rotor_at(inputs, self.constants, self.options["n_blades"], bounds.low)
         thrust = inputs["thrust_required"][0]

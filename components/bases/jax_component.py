@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Hashable, Mapping, Sequence
+from collections.abc import Callable, Hashable, Mapping, Sequence
 from operator import itemgetter
 from typing import Any
 
@@ -20,6 +20,11 @@ from propmdao.components.bases.array_function import (
     evaluate_all,
 )
 from propmdao.components.bases.last_points import LastPoints
+from propmdao.components.bases.refusals import (
+    require_finite_products,
+    require_numbers,
+    require_real,
+)
 
 
 class JaxComponent(om.ExplicitComponent):
@@ -39,28 +44,33 @@ class JaxComponent(om.ExplicitComponent):
     function: Function
     constants: Any = None
     static: Hashable = None
+    #: Words for the axes of outputs, for messages.
+    axes: Mapping[str, tuple[str, ...]] = {}
 
     def __init__(self, **options: Any) -> None:
         super().__init__(**options)
         self._linearised = LastPoints(self._derivatives_to_keep, self.n_points)
 
     def compute(self, inputs: Any, outputs: Any) -> None:
+        require_real(self)
         values = self.values_at(copied(inputs))
         for name in outputs:
             outputs[name] = values[name]
 
     def compute_jacvec_product(self, inputs: Any, d_inputs: Any, d_outputs: Any, mode: str) -> None:
+        require_real(self)
         point = copied(inputs)
         derivatives = self._linearised(point)
         if mode == "fwd":
             shapes: Shapes = {name: value.shape for name, value in point.items()}
-            products = derivatives.forward(complete_seeds(d_inputs, shapes))
-            for name in d_outputs:
-                d_outputs[name] += products[name]
+            seeds = complete_seeds(d_inputs, shapes)
+            products, sums = derivatives.forward(seeds), d_outputs
         else:
-            products = derivatives.reverse(complete_seeds(d_outputs, self.output_shapes()))
-            for name in d_inputs:
-                d_inputs[name] += products[name]
+            seeds = complete_seeds(d_outputs, self.output_shapes())
+            products, sums = derivatives.reverse(seeds), d_inputs
+        require_finite_products(products, seeds)
+        for name in sums:
+            sums[name] += products[name]
 
     def evaluate_designs(
         self, designs: Sequence[Arrays], batch_size: int
@@ -84,23 +94,30 @@ class JaxComponent(om.ExplicitComponent):
     def _evaluate_points(
         self, points: Sequence[Arrays], batch_size: int
     ) -> list[Arrays | om.AnalysisError]:
+        refusals = [_error(self.check_inputs, point) for point in points]
+        good = [point for point, refusal in zip(points, refusals, strict=True) if not refusal]
+        evaluated = iter(self._evaluate_good_points(good, batch_size))
+        return [refusal or next(evaluated) for refusal in refusals]
+
+    def _evaluate_good_points(
+        self, points: Sequence[Arrays], batch_size: int
+    ) -> list[Arrays | om.AnalysisError]:
         if not points:
             return []
         batch = [*points, *[points[-1]] * (batch_size - len(points))]
         inputs = {name: np.stack([point[name] for point in batch]) for name in points[0]}
         function, constants = self.evaluated()
         values = jax.device_get(evaluate_all(function, self.static, constants, inputs))
-        return [
-            self._checked(point, jax.tree.map(itemgetter(place), values))
-            for place, point in enumerate(points)
-        ]
+        results: list[Arrays | om.AnalysisError] = []
+        for place, point in enumerate(points):
+            here = jax.tree.map(itemgetter(place), values)
+            outputs = {name: here[name] for name in self.output_shapes()}
+            results.append(_error(self._check_results, point, here) or outputs)
+        return results
 
-    def _checked(self, inputs: Arrays, values: Arrays) -> Arrays | om.AnalysisError:
-        try:
-            self.check(inputs, values)
-        except om.AnalysisError as error:
-            return error
-        return {name: values[name] for name in self.output_shapes()}
+    def _check_results(self, inputs: Arrays, values: Mapping[str, Any]) -> None:
+        self.check(inputs, values)
+        self.require_numbers(inputs, values)
 
     def evaluated(self) -> tuple[Function, Any]:
         """Function that `compute` calls, and its constants; a `RootComponent` searches first."""
@@ -128,7 +145,7 @@ class JaxComponent(om.ExplicitComponent):
         return {name: meta["shape"] for name, meta in outputs.items()}
 
     def values_at(self, inputs: Arrays) -> Mapping[str, Any]:
-        """Evaluate the function and check what it returns.
+        """Check the inputs, evaluate the function and check what it returns.
 
         Parameters
         ----------
@@ -143,11 +160,12 @@ class JaxComponent(om.ExplicitComponent):
         Raises
         ------
         om.AnalysisError
-            When `check` raises it.
+            When `check_inputs` or `check` raises it, or an output is not finite.
         """
+        self.check_inputs(inputs)
         function, constants = self.evaluated()
         values = evaluate(function, self.static, constants, inputs)
-        self.check(inputs, values)
+        self._check_results(inputs, values)
         return values
 
     def derivatives_at(self, inputs: Arrays) -> Derivatives:
@@ -170,6 +188,38 @@ class JaxComponent(om.ExplicitComponent):
         """Derivatives in the form that is kept for further products at the same inputs."""
         return self.derivatives_at(inputs)
 
+    def check_inputs(self, inputs: Arrays) -> None:
+        """Raise ``om.AnalysisError`` for inputs that mean nothing, before the work.
+
+        By default for those that are not finite; subclasses add theirs.
+
+        Parameters
+        ----------
+        inputs : dict of arrays
+            Inputs by name.
+        """
+        require_numbers("input ", inputs)
+
+    def require_numbers(self, inputs: Arrays, values: Mapping[str, Any]) -> None:
+        """Raise ``om.AnalysisError`` where an output is not finite.
+
+        Parameters
+        ----------
+        inputs : dict of arrays
+            Inputs by name; rotation and flight speed are named in the message.
+        values : mapping
+            Results of ``function`` by name.
+        """
+        outputs = {name: values[name] for name in self.output_shapes()}
+        known = {**outputs, **inputs}
+        point = [
+            f"{np.asarray(known[name]).item():g} {unit}"
+            for name, unit in (("rpm", "rpm"), ("speed", "m/s"))
+            if name in known
+        ]
+        where = f", at {' and '.join(point)}" if point else ""
+        require_numbers("", outputs, self.axes, where)
+
     def check(self, inputs: Any, values: Mapping[str, Any]) -> None:
         """Raise ``om.AnalysisError`` where the values have no meaning; by default never.
 
@@ -180,6 +230,15 @@ class JaxComponent(om.ExplicitComponent):
         values : mapping
             Results of ``function`` by name: the outputs, and whatever the check needs beside them.
         """
+
+
+def _error(check: Callable[..., None], *values: Any) -> om.AnalysisError | None:
+    """Error that a check raises, or None."""
+    try:
+        check(*values)
+    except om.AnalysisError as error:
+        return error
+    return None
 
 
 def copied(vector: Any) -> Arrays:

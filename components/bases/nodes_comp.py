@@ -11,6 +11,7 @@ from openmdao.utils.options_dictionary import OptionsDictionary
 
 from propmdao.components.bases.array_function import Arrays, Derivatives, Shapes
 from propmdao.components.bases.jax_component import JaxComponent, complete_seeds, copied
+from propmdao.components.bases.refusals import require_finite_products, require_real
 
 #: Tells Dymos that an input has no axis of nodes.
 STATIC = ["dymos.static_target"]
@@ -100,10 +101,10 @@ class NodesComp(JaxComponent):
         self.add_output(name, val=np.full(self._full_shape(shape), val), **metadata)
 
     def compute(self, inputs: Any, outputs: Any) -> None:
-        zeros = dict.fromkeys(self._output_shapes, 0.0)
+        require_real(self)
         for node, point in self._points(inputs):
             try:
-                values = zeros if self.at_rest(point) else self.values_at(point)
+                values = self._at_rest(point) or self.values_at(point)
             except om.AnalysisError as error:
                 self._name_node(node, error)
                 raise
@@ -115,12 +116,24 @@ class NodesComp(JaxComponent):
     ) -> list[Arrays | om.AnalysisError]:
         n = self.n_points()
         points = [point for design in designs for _, point in self._points(design)]
-        resting = [self.at_rest(point) for point in points]
-        moving = [point for point, rests in zip(points, resting, strict=True) if not rests]
+        resting = [self._at_rest_or_refused(point) for point in points]
+        moving = [point for point, rest in zip(points, resting, strict=True) if rest is None]
         evaluated = iter(self._evaluate_points(moving, batch_size * n))
-        zeros: Arrays = dict.fromkeys(self._output_shapes, 0.0)
-        values = [zeros if rests else next(evaluated) for rests in resting]
+        values = [next(evaluated) if rest is None else rest for rest in resting]
         return [self._together(values[i : i + n]) for i in range(0, len(values), n)]
+
+    def _at_rest(self, point: Arrays) -> Arrays | None:
+        """Zeros for all outputs where nothing moves, inputs checked; None where something does."""
+        if not self.at_rest(point):
+            return None
+        self.check_inputs(point)
+        return dict.fromkeys(self._output_shapes, 0.0)
+
+    def _at_rest_or_refused(self, point: Arrays) -> Arrays | om.AnalysisError | None:
+        try:
+            return self._at_rest(point)
+        except om.AnalysisError as error:
+            return error
 
     def _together(self, values: Sequence[Arrays | om.AnalysisError]) -> Arrays | om.AnalysisError:
         """Outputs from those of all points, or the first error of one."""
@@ -139,6 +152,7 @@ class NodesComp(JaxComponent):
             error.args = (f"node {node}: {error}",)
 
     def compute_jacvec_product(self, inputs: Any, d_inputs: Any, d_outputs: Any, mode: str) -> None:
+        require_real(self)
         start, end = (d_inputs, d_outputs) if mode == "fwd" else (d_outputs, d_inputs)
         all_seeds = copied(start)
         for node, point in self._points(inputs):
@@ -150,6 +164,11 @@ class NodesComp(JaxComponent):
                 continue
             derivatives = self._linearised(point)
             products = (derivatives.forward if mode == "fwd" else derivatives.reverse)(seeds)
+            try:
+                require_finite_products(products, seeds)
+            except om.AnalysisError as error:
+                self._name_node(node, error)
+                raise
             for name in end:
                 if name in products:  # outputs that never change have none
                     self._view(node, name, end)[:] += products[name]

@@ -11,7 +11,11 @@ from openmdao.utils.options_dictionary import OptionsDictionary
 from propmdao.acoustics.kinematics.limits import require_outside_rotor, require_subsonic_tip
 from propmdao.components.bases.array_function import Arrays
 from propmdao.components.bases.nodes_comp import STATIC, NodesComp
-from propmdao.components.inputs.point_inputs import add_point_inputs, state_at
+from propmdao.components.inputs.point_inputs import (
+    add_point_inputs,
+    check_point_inputs,
+    state_at,
+)
 from propmdao.records.listening import Floats, require_positions
 from propmdao.records.states import RotorState
 from propmdao.records.units import RAD_PER_S
@@ -74,7 +78,7 @@ def noise_state(inputs: Arrays) -> RotorState:
 
 
 def check_rotor(inputs: Arrays, nodes: str) -> None:
-    """Refuse blades that reach the speed of sound or an observer.
+    """Refuse operating points that are none, and blades that reach sound or an observer.
 
     Parameters
     ----------
@@ -86,8 +90,10 @@ def check_rotor(inputs: Arrays, nodes: str) -> None:
     Raises
     ------
     om.AnalysisError
-        If the blade tip is not slower than sound, or an observer not outside the rotor.
+        If rotation or flight is backwards, a property of the air not positive, the blade tip not
+        slower than sound, or an observer not outside the rotor.
     """
+    check_point_inputs(inputs)
     x, y, _ = np.moveaxis(np.asarray(inputs[nodes]), -1, 0)
     radius = float(np.hypot(x, y).max())
     try:

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
+import openmdao.api as om
+
 from propmdao.components.bases.array_function import Arrays
 from propmdao.components.bases.nodes_comp import NodesComp
 from propmdao.records.air import Air
 from propmdao.records.pytrees import Scalar
 from propmdao.records.quantities import AIR, ASKED
-from propmdao.records.states import RotorState
+from propmdao.records.states import RotorState, require_operable
 
 #: Names of all properties of the air; each of them may be an input.
 AIR_INPUTS = tuple(name for name, quantity in ASKED.items() if quantity.record == AIR)
@@ -30,6 +32,28 @@ def add_point_inputs(component: NodesComp, names: Iterable[str]) -> None:
         component.add_point_input(
             quantity.variable, val=quantity.default, units=quantity.unit, desc=quantity.meaning
         )
+
+
+def check_point_inputs(inputs: Arrays) -> None:
+    """Refuse an operating point that `propmdao.analyze` refuses, in the same words.
+
+    Parameters
+    ----------
+    inputs : dict of arrays
+        Inputs of one point by name; those of the operating point are checked. No thrust required
+        stands for a propeller at rest.
+
+    Raises
+    ------
+    om.AnalysisError
+        If rotation or flight is backwards, or a property of the air not positive.
+    """
+    try:
+        for name in ("rpm", "speed", *AIR_INPUTS):
+            if name in inputs:
+                require_operable(name, inputs[name].item())
+    except ValueError as error:
+        raise om.AnalysisError(str(error)) from error
 
 
 def state_at(inputs: Arrays, rotation_speed: Scalar) -> RotorState:

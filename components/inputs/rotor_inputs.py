@@ -18,7 +18,11 @@ from propmdao.aerodynamics.wakes.helical import WakeTransport, wake_transport
 from propmdao.components.bases.array_function import Arrays
 from propmdao.components.bases.nodes_comp import STATIC, NodesComp
 from propmdao.components.inputs.model_options import declare_model
-from propmdao.components.inputs.point_inputs import add_point_inputs, state_at
+from propmdao.components.inputs.point_inputs import (
+    add_point_inputs,
+    check_point_inputs,
+    state_at,
+)
 from propmdao.records.pytrees import Scalar, record
 
 
@@ -125,6 +129,24 @@ def rotor_at(
         sections = ViscousSections(table, constants.stall_delay)
     rotor = RotorGeometry(inputs["lattice_nodes"], 0.5 * inputs["diameter"][0], n_blades)
     return RotorCase(rotor, state_at(inputs, rotation_speed), sections, constants.wake)
+
+
+def check_rotor_inputs(inputs: Arrays) -> None:
+    """Refuse a diameter that is not positive, and an operating point that is none.
+
+    Parameters
+    ----------
+    inputs : dict of arrays
+        Inputs of one point by name, those of `add_rotor_inputs` among them.
+
+    Raises
+    ------
+    om.AnalysisError
+        If the diameter is not positive, rotation or flight backwards, or a property of the air
+        not positive.
+    """
+    require_diameter(inputs)
+    check_point_inputs(inputs)
 
 
 def require_diameter(inputs: Any) -> None:

@@ -9,6 +9,10 @@ from propmdao.records.pytrees import Scalar, record
 from propmdao.records.states import RotorState
 from propmdao.runtime.compilation import compiled
 
+_NO_LOSS = 1.0e-9  # power coefficient that is lost at least, so that 0/0 is 0
+# Useful power coefficient of a brake beyond which its losses count less and less, see `_share`.
+_BRAKING = 0.05
+
 
 @record
 class Coefficients:
@@ -21,7 +25,11 @@ class Coefficients:
     CT, CQ, CP : float
         T / (rho n^2 D^4), Q / (rho n^2 D^5), P / (rho n^3 D^5) = 2 pi CQ.
     eta : float
-        Propulsive efficiency J CT / CP = T V / P, 0 in hover.
+        Propulsive efficiency J CT / CP = T V / P, at most 1 and 0 in hover; below 0, down to -1,
+        for a propeller that brakes, whether it takes power or gives it.
+    figure_of_merit : float
+        Ideal power of hover, T^1.5 / sqrt(2 rho A), over shaft power, at most 1; below 0, down to
+        -1, for negative thrust. It means something at speed 0.
     """
 
     J: Array
@@ -29,6 +37,7 @@ class Coefficients:
     CQ: Array
     CP: Array
     eta: Array
+    figure_of_merit: Array
 
 
 @compiled
@@ -49,7 +58,7 @@ def coefficients(
     Returns
     -------
     Coefficients
-        J, CT, CQ, CP and eta.
+        J, CT, CQ, CP, eta and figure of merit.
     """
     turning = state.rotation_speed > 0.0
     n = jnp.where(turning, state.rotation_speed, 2.0 * jnp.pi) / (2.0 * jnp.pi)
@@ -59,6 +68,29 @@ def coefficients(
     CT = switch * thrust / force
     CQ = switch * torque / (force * diameter)
     CP = 2.0 * jnp.pi * CQ
-    absorbs = CP != 0.0
-    eta = jnp.where(absorbs, J * CT / jnp.where(absorbs, CP, 1.0), 0.0)
-    return Coefficients(J, CT, CQ, CP, eta)
+    # T^1.5 / sqrt(2 rho A) per rho n^3 D^5, with A = pi D^2 / 4 and the sign of the thrust.
+    hover = jnp.sqrt(2.0 / jnp.pi) * CT * _sqrt(jnp.abs(CT))
+    return Coefficients(J, CT, CQ, CP, _share(J * CT, CP), _share(hover, CP))
+
+
+def _share(useful: Array, shaft: Array) -> Array:
+    """Useful over shaft power for a propeller; for a brake what falls from 0 to -1.
+
+    With L = shaft - useful, the power that is lost and never negative, useful / (useful + L) is the
+    efficiency. Where the useful power is negative, shaft power goes through 0 and means nothing
+    beside it: useful / (|useful| + L) goes on with the same slope at 0, and stays above -1. A
+    deep windmill loses as much as it brakes, so that this would rise again toward a standstill,
+    and an optimiser would stay there: losses count less the more useful power is negative.
+    """
+    braking = jnp.minimum(useful, 0.0)
+    # Of the ideal power of hover, no part of the shaft power in flight, the rest may be negative.
+    smooth = jnp.hypot(_NO_LOSS, 2.0 * braking)
+    rest = shaft - useful
+    lost = 0.5 * (rest + jnp.sqrt(rest**2 + smooth**2))
+    return useful / (jnp.abs(useful) + lost / (1.0 + (braking / _BRAKING) ** 2))
+
+
+def _sqrt(x: Array) -> Array:
+    """Square root whose derivative at 0 is 0, for products with what vanishes there."""
+    positive = x > 0.0
+    return jnp.where(positive, jnp.sqrt(jnp.where(positive, x, 1.0)), 0.0)

@@ -26,6 +26,7 @@ from propmdao.geometry.surface import surface_panels
 from propmdao.propeller.description import Propeller
 from propmdao.records.air import require_known_air
 from propmdao.records.models import SelfNoiseModel
+from propmdao.runtime.finite import require_finite
 
 _MAX_SAMPLES = 30_000_000
 _MAX_DURATION = 1200.0  # s
@@ -55,7 +56,8 @@ def fly_over(analysis: Analysis, flight: Flight, *, sound: bool = False) -> Flyo
     Raises
     ------
     ValueError
-        If the propeller does not fly or turn, or the record would be too long.
+        If the propeller does not fly or turn, the record would be too long, or a result would be
+        no number (`NotFiniteError`).
 
     Notes
     -----
@@ -115,12 +117,17 @@ def fly_over(analysis: Analysis, flight: Flight, *, sound: bool = False) -> Flyo
     if flight.absorption:
         for part, power in parts.items():
             parts[part] = np.asarray(absorb(power, BANDS_HZ, distance, air))
+    where = f", at {analysis.rpm:g} rpm and {speed:g} m/s"
+    bands = [f"{frequency:g} Hz" for frequency in BANDS_HZ]
+    for part, power in parts.items():
+        require_finite(f"{part} noise", power, [f"{t:.1f} s" for t in time], bands, where=where)
     pressure = None
     if sound:
         pressure = tones.total[0]
         if flight.absorption:
             pressure = absorbed_record(pressure, distance, air, each, rate)
         pressure = pressure + changing_noise(BANDS_HZ, parts["broadband"], each, rate)
+        require_finite("pressure", pressure, "sample", where=where)
     return Flyover(time, parts, sights[0], pressure)
 
 

@@ -27,6 +27,7 @@ from propmdao.formats.wopwop.sources import (
 )
 from propmdao.formats.wopwop.zones import Zone
 from propmdao.records.air import Air
+from propmdao.runtime.finite import require_finite
 
 
 @dataclass(frozen=True)
@@ -65,6 +66,8 @@ def run_case(folder: str | Path) -> list[CaseResult]:
     ------
     WopwopFileError
         If a file is missing, broken or asks for what is not computed, in one line.
+    NotFiniteError
+        If a pressure would be no number.
     """
     return [
         CaseResult(case.name, grid.title, _pressure(case, grid))
@@ -78,6 +81,9 @@ def _pressure(case: Case, grid: ObserverGrid) -> PressureHistories:
     history = silence(observers, grid.times)
     for container in case.containers:
         history = history + _container(case, container, observers, grid.times)
+    times = [f"{t:g} s" for t in grid.times]
+    for name, pressure in history.parts.items():
+        require_finite(f"{name} noise", pressure, "observer", times, where=f", in {case.name}")
     history = history.each(lambda pressure: _filtered(pressure, grid))
     return PressureHistories(
         grid.position[:, None] + grid.velocity * grid.times[:, None],

@@ -48,7 +48,7 @@ class Analysis:
     loads : RotorLoads
         Loads of the vortex lattice.
     coefficients : Coefficients
-        J, CT, CQ, CP, eta.
+        J, CT, CQ, CP, eta, figure of merit.
     tones : Tones
         Complex pressure amplitudes at the observers.
     broadband : SelfNoise or None
@@ -104,8 +104,8 @@ class Analysis:
         dict
             What was asked: propeller (name, diameter, n_blades, checksum of the description,
             source), change, point, model, listening, and where the polars come from; then rpm,
-            speed, rho, J, thrust, torque, shaft_power, CT, CQ, CP, eta, converged, failure (None,
-            or why it did not converge) and a list of observers with their levels.
+            speed, rho, J, thrust, torque, shaft_power, CT, CQ, CP, eta, figure_of_merit, converged,
+            failure (None, or why it did not converge) and a list of observers with their levels.
         """
         levels = jax.tree.map(np.asarray, _levels(self.tones))
         places = directions(self.listening.observers).rounded()
@@ -126,6 +126,7 @@ class Analysis:
             "CQ": float(self.coefficients.CQ),
             "CP": float(self.coefficients.CP),
             "eta": float(self.coefficients.eta),
+            "figure_of_merit": float(self.coefficients.figure_of_merit),
             "converged": bool(self.loads.converged),
             "failure": failure(self.loads),
             "observers": [

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 from functools import partial
 from typing import Unpack
 
@@ -26,7 +27,7 @@ from propmdao.aerodynamics.solutions.result import RotorLoads
 from propmdao.aerodynamics.trim import rotation_bounds, trim
 from propmdao.aerodynamics.wakes.helical import wake_transport
 from propmdao.analysis.request import Asked, Request
-from propmdao.analysis.results import Analysis
+from propmdao.analysis.results import MECHANISMS, Analysis
 from propmdao.analysis.self_noise import BANDS_HZ, self_noise, strip_flow
 from propmdao.geometry.blade import Blade
 from propmdao.geometry.meshes import MeshRadii, blade_meshes, mesh_radii
@@ -39,6 +40,7 @@ from propmdao.records.panels import Panels
 from propmdao.records.states import OperatingPoint, RotorState
 from propmdao.records.units import RAD_PER_S
 from propmdao.runtime.compilation import compiled
+from propmdao.runtime.finite import require_finite
 
 
 def analyze(
@@ -85,7 +87,8 @@ def analyze(
     ------
     ValueError
         Bad input, in one line; `TrimError` among them when the thrust is out of reach within
-        `rotation_bounds`.
+        `rotation_bounds`, and `NotFiniteError` when a result would be no number: nothing could be
+        done with it, while one that has not converged is there to be looked at.
     """
     records = {"point": point, "change": change, "model": model, "listening": listening}
     request = Request.of(records, **asked)
@@ -133,7 +136,7 @@ def analyze(
         )
         noise = self_noise(flow, case.rotor.n_blades, state, points, model.noise.broadband)
         noise = _noise_by_paths(noise, paths, state, listening.surroundings)
-    return Analysis(
+    analysis = Analysis(
         propeller=propeller,
         request=request,
         rpm=float(state.rotation_speed) / RAD_PER_S if point.rpm is None else float(point.rpm),
@@ -143,6 +146,8 @@ def analyze(
         broadband=noise,
         polars=sources,
     )
+    _require_numbers(analysis)
+    return analysis
 
 
 def _solve(case: RotorCase, point: OperatingPoint) -> tuple[RotorLoads, RotorState]:
@@ -175,6 +180,33 @@ def _noise_by_paths(
     return jax.tree.map(
         lambda power: bands_by_paths(power, BANDS_HZ, paths, state, surroundings), noise
     )
+
+
+def _require_numbers(analysis: Analysis) -> None:
+    """Refuse results that are no numbers, what others follow from first."""
+    where = f", at {analysis.rpm:g} rpm and {analysis.point.speed:g} m/s"
+    loads, noise = analysis.loads, analysis.broadband
+    strips = [f"r/R {r:.2f}" for r in np.asarray(loads.strips.r_over_R)]
+    by_strip = {
+        "section_speed": loads.sections.relative_speed,
+        "section_lift_coefficient": loads.sections.lift_coefficient,
+        "strip_thrust": loads.strip_thrust,
+        "strip_torque": loads.strip_torque,
+    }
+    for name, values in by_strip.items():
+        require_finite(name, values, strips, where=where)
+    for record in (loads, analysis.coefficients):
+        for field in dataclasses.fields(record):
+            if isinstance(value := getattr(record, field.name), Array):
+                require_finite(field.name, value, where=where)
+    for name, values in {"load_position": loads.point_loads.position,
+                         "load_force": loads.point_loads.force}.items():
+        require_finite(name, values, "load", where=where)
+    for name, pressure in analysis.tones.parts.items():
+        require_finite(f"{name} noise", pressure, "observer", "harmonic", where=where)
+    bands = [f"{frequency:g} Hz" for frequency in BANDS_HZ]
+    for name in () if noise is None else MECHANISMS:
+        require_finite(f"broadband {name}", getattr(noise, name), "observer", bands, where=where)
 
 
 def _warn_outside_polars(case: RotorCase, loads: RotorLoads) -> None:

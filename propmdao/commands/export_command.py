@@ -123,3 +123,6 @@ def _write_case(options: argparse.Namespace, propeller: Propeller) -> None:
         f" {analysis.point.speed:g} m/s, thrust {float(analysis.loads.thrust):.4g} N,"
         f" {len(listening.observers)} observers"
     )
+    from propmdao.commands import report
+
+    report.print_doubts([analysis.to_dict()])

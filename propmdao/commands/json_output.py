@@ -3,29 +3,34 @@
 from __future__ import annotations
 
 import json
-import math
-import sys
 from typing import Any
+
+from propmdao.runtime.finite import require_finite
 
 
 def print_json(value: Any) -> None:
-    """Print a value; null stands for what JSON has no number for.
+    """Print a value.
 
     Parameters
     ----------
     value : Any
         Dictionaries, lists, strings and numbers.
+
+    Raises
+    ------
+    NotFiniteError
+        If a number is none, or infinite, which JSON has no word for; nothing is printed then.
     """
-    json.dump(_plain(value), sys.stdout, indent=2, allow_nan=False)
-    print()
+    print(json.dumps(_plain(value, "result"), indent=2, allow_nan=False))
 
 
-def _plain(value: Any) -> Any:
-    """Copy with null for what JSON has no number for, and 0 for a zero that has a sign."""
+def _plain(value: Any, name: str) -> Any:
+    """Copy with 0 for a zero that has a sign."""
     if isinstance(value, dict):
-        return {key: _plain(item) for key, item in value.items()}
+        return {key: _plain(item, key) for key, item in value.items()}
     if isinstance(value, list):
-        return [_plain(item) for item in value]
+        return [_plain(item, name) for item in value]
     if isinstance(value, float):
-        return value + 0.0 if math.isfinite(value) else None
+        require_finite(name, value)
+        return value + 0.0
     return value

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterable, Sequence
 from typing import Any
 
@@ -66,7 +65,7 @@ def print_analyses(analyses: Sequence[dict[str, Any]]) -> None:
             console.print(TONES_ONLY)
     else:
         console.print("No observers: --arc RADIUS ELEVATION... adds their noise.\n")
-    _print_doubts(console, analyses)
+    print_doubts(analyses)
     print_files(first)
 
 
@@ -86,7 +85,7 @@ def print_flyover(result: dict[str, Any]) -> None:
         f"{result['rpm']:.1f} rpm, thrust {result['thrust']:.4g} N, speed"
         f" {result['speed']:.4g} m/s, {flight['height']:g} m above the ground",
     )
-    _print_doubts(console, [result])
+    print_doubts([result])
     table = _table()
     for heading in ("", "loudest\ndBA", "SEL\ndBA", "EPNL\nEPNdB"):
         table.add_column(heading, justify="right" if heading else "left")
@@ -123,8 +122,15 @@ def _print_propeller(console: Console, result: dict[str, Any], condition: str) -
         )
 
 
-def _print_doubts(console: Console, results: Sequence[dict[str, Any]]) -> None:
-    """Print what keeps numbers from being used."""
+def print_doubts(results: Sequence[dict[str, Any]]) -> None:
+    """Print what keeps numbers from being used.
+
+    Parameters
+    ----------
+    results : sequence of dict
+        Results of one propeller with the keys of ``propmdao analyze --json``.
+    """
+    console = Console()
     for result in results:
         if not result["converged"]:
             console.print(
@@ -154,7 +160,7 @@ def print_files(result: dict[str, Any]) -> None:
         print("Figures:", *result["figures"])
 
 
-def _operating_points(analyses: Iterable[dict[str, Any]]) -> Table:
+def _operating_points(analyses: Sequence[dict[str, Any]]) -> Table:
     table = _table()
     columns = {
         "rpm": ("rpm", ".1f"),
@@ -167,6 +173,9 @@ def _operating_points(analyses: Iterable[dict[str, Any]]) -> Table:
         "CP": ("CP", ".5f"),
         "eta": ("eta", ".3f"),
     }
+    if not analyses[0]["speed"]:  # eta is 0 in hover
+        del columns["eta"]
+        columns["figure_of_merit"] = ("figure\nof merit", ".3f")
     for heading, _ in columns.values():
         table.add_column(heading, justify="right")
     for analysis in analyses:
@@ -217,4 +226,4 @@ def _level(value: float, form: str) -> str:
 
 def _format(value: float, form: str) -> str:
     # A zero that has a sign is still zero.
-    return format(value + 0.0, form) if math.isfinite(value) else "-"
+    return format(value + 0.0, form)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 
+from propmdao.propeller import checks
 from propmdao.propeller.description import Propeller
 
 
@@ -21,12 +22,22 @@ class Change:
         Diameter to which the whole blade is stretched [m]; None: as described.
     n_blades : int or None
         Number of blades; None: as described.
+
+    Raises
+    ------
+    ValueError
+        If the offset or the factor is not finite.
     """
 
     twist_offset_deg: float = 0.0
     chord_factor: float = 1.0
     diameter: float | None = None
     n_blades: int | None = None
+
+    def __post_init__(self) -> None:
+        """Refuse changes of all stations that are no numbers: the stations are not to blame."""
+        for name in ("twist_offset_deg", "chord_factor"):
+            checks.number(name, getattr(self, name))
 
     def applied_to(self, propeller: Propeller) -> Propeller:
         """Change a propeller.

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -30,7 +31,8 @@ DISTRIBUTIONS = (
 class Propeller:
     """Description of a propeller: its stations, sections and blades.
 
-    A changed propeller is ``dataclasses.replace(propeller, beta_deg=propeller.beta_deg + 1)``.
+    A changed propeller is ``dataclasses.replace(propeller, beta_deg=propeller.beta_deg + 1)``. With
+    other stations a sweep or a rake that is the same everywhere, as by default, stays that.
 
     Attributes
     ----------
@@ -95,8 +97,8 @@ class Propeller:
             value = getattr(self, key)
             if key == "thickness_over_chord" and value is None:
                 continue
-            if key in ("sweep_over_R", "rake_over_R") and np.ndim(value) == 0:
-                value = np.full(r.size, checks.number(key, value))
+            if key in ("sweep_over_R", "rake_over_R"):
+                value = _everywhere(key, value, r)
             object.__setattr__(self, key, checks.distribution(key, value, r))
         chord, beta, thickness = self.c_over_R, self.beta_deg, self.thickness_over_chord
         checks.require("c_over_R", "be positive", chord > 0.0, chord, r)
@@ -105,6 +107,13 @@ class Propeller:
             holds = (thickness > 0.0) & (thickness < 1.0)
             checks.require("thickness_over_chord", "be above 0 and below 1", holds, thickness, r)
         object.__setattr__(self, "airfoils", checks.airfoil_pairs(self.airfoils))
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        """Make arrays read-only again, which pickling forgets."""
+        for value in state.values():
+            if isinstance(value, np.ndarray):
+                value.setflags(write=False)
+        self.__dict__.update(state)
 
     def sections(self) -> tuple[FloatArray, FloatArray]:
         """Blend the airfoils to the stations, linearly in r/R.
@@ -123,3 +132,14 @@ class Propeller:
         )
         camber = weights @ np.stack([airfoil.camber for airfoil in airfoils])
         return camber, weights @ np.stack([airfoil.thickness for airfoil in airfoils])
+
+
+def _everywhere(key: str, value: Any, r: FloatArray) -> Any:
+    """Sweep or rake at the stations, where it is one number, or was at a propeller's old ones."""
+    if np.ndim(value) == 0:
+        return np.full(r.size, checks.number(key, value))
+    # Only a propeller's own arrays are read-only: a user's list of another length is a mistake.
+    described = isinstance(value, np.ndarray) and not value.flags.writeable
+    if described and value.size != r.size and np.all(value == value[0]):
+        return np.full(r.size, value[0])
+    return value

@@ -141,10 +141,14 @@ _RESULTS = (
     Quantity("CT", "", "thrust coefficient T / (rho n^2 D^4)"),
     Quantity("CQ", "", "torque coefficient Q / (rho n^2 D^5)"),
     Quantity("CP", "", "power coefficient 2 pi CQ"),
-    Quantity("eta", "", "propulsive efficiency J CT / CP, 0 in hover", variable="efficiency"),
+    Quantity(
+        "eta", "", "propulsive efficiency J CT / CP, 0 in hover, below 0 where the propeller brakes",
+        variable="efficiency",
+    ),
+    Quantity("figure_of_merit", "", "ideal power of hover T^1.5 / sqrt(2 rho A) over shaft power"),
     Quantity("converged", "", "whether the solution of the loads has converged"),
     Quantity("failure", "", "why it has not, or null"),
-)
+)  # fmt: skip
 
 _LEVELS = (
     Quantity("spl_bpf_db", "dB", "level of the tone at the blade passage frequency"),

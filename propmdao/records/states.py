@@ -39,6 +39,41 @@ class RotorState:
         return dataclasses.replace(self, rotation_speed=rotation_speed)
 
 
+_OR_MORE = {"rpm": "0", "speed": "0 m/s"}
+_POSITIVE = {
+    "thrust": "N",
+    "density": "kg/m3",
+    "sound_speed": "m/s",
+    "dynamic_viscosity": "Pa s",
+    "temperature": "K",
+    "pressure": "Pa",
+}
+
+
+def require_operable(name: str, value: float) -> None:
+    """Refuse a value of an operating point that is out of range; call it outside ``jit``.
+
+    Parameters
+    ----------
+    name : str
+        Name of the value, a field of `OperatingPoint` or `Air`.
+    value : float
+        Value as it is asked for.
+
+    Raises
+    ------
+    ValueError
+        If rotation or flight is backwards, a property of the air or the thrust not positive, or
+        the value not finite.
+    """
+    if name in _OR_MORE and not 0.0 <= value < np.inf:
+        raise ValueError(f"{name} must be {_OR_MORE[name]} or more; it is {value:g}")
+    if name in _POSITIVE and not 0.0 < value < np.inf:
+        raise ValueError(f"{name} must be positive; it is {value:g} {_POSITIVE[name]}")
+    if not np.isfinite(value):
+        raise ValueError(f"{name} must be finite; it is {value:g}")
+
+
 @dataclasses.dataclass(frozen=True)
 class OperatingPoint:
     """Operating point of a propeller: a rotation speed or a thrust, at a flight speed, in air.
@@ -69,20 +104,12 @@ class OperatingPoint:
         """Refuse points without exactly one of rpm and thrust, or with values out of range."""
         if (self.rpm is None) == (self.thrust is None):
             raise ValueError("give either rpm or thrust")
-        if self.rpm is not None and not 0.0 <= self.rpm < np.inf:
-            raise ValueError(f"rpm must be 0 or more; it is {self.rpm:g}")
-        if self.thrust is not None and not 0.0 < self.thrust < np.inf:
-            raise ValueError(f"thrust must be positive; it is {self.thrust:g} N")
-        if not 0.0 <= self.speed < np.inf:
-            raise ValueError(f"speed must be 0 m/s or more; it is {self.speed:g}")
-        for name, unit in (
-            ("density", "kg/m3"),
-            ("sound_speed", "m/s"),
-            ("dynamic_viscosity", "Pa s"),
-        ):
-            value = getattr(self.air, name)
-            if not 0.0 < value < np.inf:
-                raise ValueError(f"{name} must be positive; it is {value:g} {unit}")
+        for name in ("rpm", "thrust", "speed"):
+            value = getattr(self, name)
+            if value is not None:
+                require_operable(name, value)
+        for field in dataclasses.fields(self.air):
+            require_operable(field.name, getattr(self.air, field.name))
 
     def at(self, rotation_speed: Scalar) -> RotorState:
         """State of the rotor at a rotation speed.

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import dataclasses
-import math
 import sys
 import types
 from collections.abc import Callable
@@ -42,12 +41,13 @@ class Answer:
             "rho": asked.point.air.density,
             **point,
             "thrust": 1.5,
-            "eta": math.nan,
+            "eta": 0.5,
+            "figure_of_merit": 0.5,
             "converged": True,
             "failure": None,
             "observers": [
                 {"elevation_deg": elevation, "azimuth_deg": azimuth, "radius": radius, **levels}
-                | {"oaspl_thickness_db": -math.inf, "harmonics": [], "third_octave": []}
+                | {"oaspl_thickness_db": -200.0, "harmonics": [], "third_octave": []}
                 for radius, elevation, azimuth in zip(
                     *directions(asked.listening.observers).rounded(), strict=True
                 )

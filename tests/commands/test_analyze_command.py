@@ -125,8 +125,7 @@ def test_one_rpm_gives_an_object_of_strict_json(
     assert main(["analyze", PROPELLER, "--rpm", "4000", "--arc", "2", "0", "--json"]) == 0
     result = json.loads(capsys.readouterr().out, parse_constant=forbidden)
     assert result["rpm"] == 4000.0
-    assert result["eta"] is None
-    assert result["observers"][0]["oaspl_thickness_db"] is None
+    assert result["observers"][0]["oaspl_thickness_db"] == -200.0
 
 
 def test_tables_say_what_is_left_out_and_fit_eighty_columns(
@@ -231,7 +230,7 @@ def test_keys_are_those_promised() -> None:
     point = json.loads(result.stdout)
     assert list(point) == (
         "propeller point change model listening polars rpm speed rho J thrust torque shaft_power"
-        " CT CQ CP eta converged failure observers".split()
+        " CT CQ CP eta figure_of_merit converged failure observers".split()
     )
     assert set(point["propeller"]) == {"name", "diameter", "n_blades", "checksum", "source"}
     assert set(point["point"]) == {"rpm", "thrust", "speed", "air"}

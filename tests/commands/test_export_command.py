@@ -3,16 +3,20 @@
 from __future__ import annotations
 
 import csv
+import dataclasses
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 
+from propmdao.analysis import single_point
 from propmdao.commands.program import main
 from propmdao.formats.propellers import load_propeller
 from propmdao.formats.wopwop.cases import read_cases
 from propmdao.propeller.airfoils.coordinates import read_coordinates
+from propmdao.records.fidelity import Fidelity
 
 PROPELLER = "apcsf_11x4.7"
 
@@ -102,3 +106,25 @@ def test_what_is_not_written(
 def test_a_folder_is_no_file(refused: Callable[..., str], tmp_path: Path) -> None:
     (tmp_path / "blade.toml").mkdir()
     assert "it is a folder" in refused("export", PROPELLER, "--to", str(tmp_path / "blade.toml"))
+
+
+def test_loads_that_did_not_converge_say_so(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """As analyze does: the case is written, exit status 0, and its reader is warned."""
+    coarse = Fidelity(n_chordwise=2, n_spanwise=4, n_contour=5, n_surface_span=4, n_harmonics=2)
+    analyze = single_point.analyze
+
+    def unconverged(*values: Any, **asked: Any) -> Any:
+        analysis = analyze(*values, **asked, fidelity=coarse)
+        loads = dataclasses.replace(analysis.loads, converged=np.asarray(False))
+        return dataclasses.replace(analysis, loads=loads)
+
+    arguments = "--rpm 4200 --speed 8 --arc 1.905 -45".split()
+    monkeypatch.setattr(single_point, "analyze", unconverged)
+    assert export(tmp_path / "case", *arguments) == 0
+    out = " ".join(capsys.readouterr().out.split())
+    assert "NOT CONVERGED at 4200.0 rpm, do not use these numbers: thrust" in out
+    monkeypatch.setattr(single_point, "analyze", lambda *a, **k: analyze(*a, **k, fidelity=coarse))
+    assert export(tmp_path / "case", *arguments) == 0
+    assert "CONVERGED" not in capsys.readouterr().out

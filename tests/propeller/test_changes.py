@@ -46,7 +46,6 @@ def test_the_source_of_a_changed_blade_says_what_was_changed():
         (Change(chord_factor=0.0), "c_over_R must be positive"),
         (Change(diameter=-0.3), "diameter must be positive"),
         (Change(n_blades=0), "n_blades must be at least 1; it is 0"),
-        (Change(twist_offset_deg=float("nan")), "beta_deg must be"),
     ],
 )
 def test_what_no_blade_can_be_is_refused_as_in_a_description(change, message):
@@ -59,3 +58,11 @@ def test_the_checksum_is_that_of_the_numbers():
     assert checksum(load_propeller("apcsf_11x4.7")) == checksum(PROPELLER)
     assert checksum(Change(twist_offset_deg=1e-9).applied_to(PROPELLER)) != checksum(PROPELLER)
     assert len(checksum(PROPELLER)) == 8 and int(checksum(PROPELLER), 16) >= 0
+
+
+@pytest.mark.parametrize("name", ["twist_offset_deg", "chord_factor"])
+def test_a_change_that_is_no_number_is_named_itself(name):
+    """Not the distribution that it would have changed."""
+    for value in (float("nan"), float("inf"), "1"):
+        with pytest.raises(ValueError, match=f"^{name} must be a finite number; it is"):
+            Change(**{name: value})

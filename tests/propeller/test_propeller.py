@@ -256,3 +256,24 @@ def test_an_unknown_propeller_lists_what_comes_near(name: str, parts: list[str])
     for part in parts:
         assert part in str(caught.value)
     assert "\n" not in str(caught.value)
+
+
+@pytest.mark.parametrize("sent", [False, True], ids=["here", "sent to another process"])
+def test_other_stations_keep_the_sweep_and_rake_that_were_never_given(sent: bool) -> None:
+    described = propeller(rake_over_R=0.01)
+    if sent:
+        described = pickle.loads(pickle.dumps(described))
+    values = {"r_over_R": [0.2, 0.6, 1.0], "c_over_R": [0.1] * 3, "beta_deg": [30.0, 20.0, 10.0]}
+    changed = dataclasses.replace(described, **values)
+    np.testing.assert_array_equal(changed.sweep_over_R, np.zeros(3))
+    np.testing.assert_array_equal(changed.rake_over_R, np.full(3, 0.01))
+
+
+def test_a_sweep_that_belongs_to_other_stations_is_refused() -> None:
+    swept = propeller(sweep_over_R=[0.0, 0.01, 0.02, 0.1])
+    values = {"r_over_R": [0.2, 0.6, 1.0], "c_over_R": [0.1] * 3, "beta_deg": [30.0, 20.0, 10.0]}
+    message = "^sweep_over_R has 4 values for 3 stations of r_over_R$"
+    with pytest.raises(PropellerError, match=message):
+        dataclasses.replace(swept, **values)
+    with pytest.raises(PropellerError, match=message):
+        propeller(**values, sweep_over_R=[0.0] * 4)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import math
 
 import pytest
@@ -51,3 +52,17 @@ def test_the_state_of_the_rotor_is_in_radians_per_second():
     assert state.mach == pytest.approx(0.05)
     assert state.turning(5.0) == RotorState(5.0, 17.0, point.air)
     assert OperatingPoint(thrust=1.0).rotation_speed is None
+
+
+@pytest.mark.parametrize("name", ["rpm", "thrust", "speed"])
+def test_a_point_that_is_no_number_is_named(name):
+    drive = {} if name in ("rpm", "thrust") else {"rpm": 4000.0}
+    with pytest.raises(ValueError, match=f"^{name} must be .*; it is nan"):
+        OperatingPoint(**drive, **{name: float("nan")})
+
+
+@pytest.mark.parametrize("name", [field.name for field in dataclasses.fields(Air)])
+def test_air_that_is_no_number_is_named(name):
+    for value in (float("nan"), float("inf")):
+        with pytest.raises(ValueError, match=f"^{name} must be .*; it is {value}"):
+            OperatingPoint(rpm=4000.0, air=Air(**{name: value}))
