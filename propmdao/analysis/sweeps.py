@@ -271,7 +271,8 @@ def _analysed(
         for name in (*LEVELS, *BROADBAND_LEVELS)
         if name in observer
     }
-    results[_WARNINGS] = "; ".join(" ".join(str(warning.message).split()) for warning in caught)
+    said = dict.fromkeys(" ".join(str(warning.message).split()) for warning in caught)
+    results[_WARNINGS] = "; ".join(said)
     unconverged = "" if results["converged"] else "the solution has not converged"
     return results | levels, results.get("failure") or unconverged
 

@@ -15,7 +15,7 @@ from propmdao.analysis import single_point
 from propmdao.commands.program import main
 from propmdao.formats.propellers import load_propeller
 from propmdao.formats.wopwop.cases import read_cases
-from propmdao.propeller.airfoils.coordinates import read_coordinates
+from propmdao.propeller.airfoils.coordinate_files import read_coordinates
 from propmdao.records.fidelity import Fidelity
 
 PROPELLER = "apcsf_11x4.7"

@@ -26,6 +26,9 @@ def write(path: Path, text: str) -> Path:
         BLADE + "\n",
         "r_over_R,c_over_R,beta_deg\n0.15,0.109,21.11\n0.5,0.223,17.06\n1,0.042,5.04\n",
         "0.15 0.109 21.11\n0.5 0.223 17.06\n1 0.042 5.04\n",
+        "\ufeff0.15 0.109 21.11\n0.5 0.223 17.06\n1 0.042 5.04\n",
+        "0.15 0.109 21.11 # measured twice\n0.5 0.223 17.06\n1 0.042 5.04\n",
+        "0,15 0,109 21,11\n0,5 0,223 17,06\n1,0 0,042 5,04\n",
     ],
 )
 def test_uiuc_geometry_is_read_in_either_form(text: str, tmp_path: Path) -> None:
@@ -46,6 +49,11 @@ def test_uiuc_geometry_is_read_in_either_form(text: str, tmp_path: Path) -> None
     ("text", "message"),
     [
         ("h\n0.15 0.1 20\n0.5 0.2\n", ", line 3: three numbers r/R c/R beta expected, not '0.5"),
+        ("0.15 0.1 20 twice\n1 0.2 5\n", ", line 1: three numbers r/R c/R beta expected, not '0.1"),
+        ("0.15x 0.1 20\n0.6 0.1 20\n1 0.2 5\n", ", line 1: three numbers r/R c/R beta expected"),
+        ("r/R c/R beta 0.15 0.1 20\n1 0.2 5\n", ", line 1: three numbers r/R c/R beta expected"),
+        ("h\ninf inf inf\n1 0.2 5\n", ", line 2: 'inf' is not finite"),
+        ("h\n0.15 0.1 1e308\n1 0.2 5\n", ", line 2: '1e308' is out of range"),
         ("h\n0.15 0.1 20\n1 -0.2 5\n", ": c_over_R must be positive; station 2 (r/R 1) has -0.2"),
         ("h\n", ": r_over_R must hold at least 2 stations; it holds 0"),
     ],

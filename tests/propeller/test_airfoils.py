@@ -18,7 +18,8 @@ from propmdao.propeller.airfoils.airfoil import (
     naca4_camber_line,
     naca4_from_name,
 )
-from propmdao.propeller.airfoils.coordinates import airfoil_from_coordinates, read_coordinates
+from propmdao.propeller.airfoils.coordinate_files import read_coordinates
+from propmdao.propeller.airfoils.coordinates import airfoil_from_coordinates
 from propmdao.propeller.airfoils.library import find_airfoil
 
 # The polygon through the 81 grid points misses the curvature between them: (pi/80)^2 / 4 at most.
@@ -179,34 +180,8 @@ def test_a_wrong_name_is_one_clear_line(name: str, message: str) -> None:
     assert "\n" not in str(caught.value)
 
 
-def test_a_contour_the_wrong_way_round_is_refused() -> None:
-    x, z = contour(naca4(0.03, 0.4, 0.09), 40)
-    with pytest.raises(AirfoilError, match="thickness must be positive; it is not at x/c"):
-        airfoil_from_coordinates("reversed", x[::-1], z[::-1])
-
-
-def test_a_contour_in_millimetres_is_refused() -> None:
-    x, z = contour(naca4(0.03, 0.4, 0.09), 40)
-    with pytest.raises(AirfoilError, match="must have unit chord.* to x = 100"):
-        airfoil_from_coordinates("big", 100.0 * x, 100.0 * z)
-
-
 def test_a_side_that_folds_back_is_refused() -> None:
     x, z = contour(naca4(0.03, 0.4, 0.09), 40)
     x[[10, 11]] = x[[11, 10]]
     with pytest.raises(AirfoilError, match="a side folds back at x/c"):
         airfoil_from_coordinates("folded", x, z)
-
-
-def test_a_line_that_is_no_point_is_named(tmp_path: Path) -> None:
-    path = tmp_path / "bad.dat"
-    path.write_text("title\n1.0 0.0\n0.9 abc\n")
-    with pytest.raises(AirfoilError, match=r"bad\.dat', line 3: two numbers x z expected"):
-        read_coordinates(path)
-
-
-def test_a_file_without_points_is_refused(tmp_path: Path) -> None:
-    path = tmp_path / "empty.dat"
-    path.write_text("title\n")
-    with pytest.raises(AirfoilError, match="'empty' needs at least 10 finite points"):
-        read_coordinates(path)

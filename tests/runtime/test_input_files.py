@@ -32,6 +32,20 @@ def test_bytes_that_are_no_text_are_refused_or_replaced(tmp_path: Path) -> None:
     assert read_text(path, OwnError, encoding="latin-1") == "étude\n1 2\n"
 
 
+@pytest.mark.parametrize("encoding", ["utf-8-sig", "utf-16"])
+def test_a_byte_order_mark_says_the_encoding(encoding: str, tmp_path: Path) -> None:
+    path = tmp_path / "marked.txt"
+    path.write_text("étude\n1 2\n", encoding=encoding)
+    assert read_text(path, OwnError) == "étude\n1 2\n"
+    assert read_text(path, OwnError, encoding="latin-1") == "étude\n1 2\n"
+
+
+@pytest.mark.parametrize("read", [read_text, read_bytes])
+def test_a_path_that_no_file_can_have_is_one_line(read) -> None:
+    with pytest.raises(OwnError, match="^a b: cannot be read: embedded null byte in its path$"):
+        read("a\0b", OwnError)
+
+
 @pytest.mark.parametrize("title", ["a title\n", "x, y\n", ""])
 def test_rows_are_read_under_a_title_or_none(title: str) -> None:
     rows = table_rows(title + "1 2\n\n3,4\n", 2, "two numbers x y", OwnError, "points")

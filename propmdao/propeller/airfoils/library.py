@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from propmdao.propeller.airfoils.airfoil import Airfoil, AirfoilError, naca4_from_name
-from propmdao.propeller.airfoils.coordinates import read_coordinates
+from propmdao.propeller.airfoils.coordinate_files import read_coordinates
 from propmdao.propeller.catalog import airfoil_file, airfoil_names
 
 
