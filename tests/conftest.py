@@ -12,7 +12,7 @@ import pytest
 
 from propmdao.formats.wopwop.geometry_file import GeometryFile, write_geometry
 from propmdao.formats.wopwop.loading_file import LoadingFile, write_loading
-from propmdao.formats.wopwop.namelists import write_namelists
+from propmdao.formats.wopwop.namelists.groups import write_namelists
 from propmdao.formats.wopwop.zones import Zone
 
 # Read when OpenMDAO is imported, so set before any test module is.
@@ -116,11 +116,13 @@ def make_case(tmp_path: Path, geometry: GeometryFile, loading: LoadingFile) -> C
                 "highPassFrequency": 5.0,
             },
         }
-        for name, values in changes.items():
-            groups[name] = groups.get(name, {}) | values
         rotor = {"title": "rotor", "nbContainer": n_blades, "nbBase": 1, "dTau": 2e-4}
         turn = {"AngleType": "KnownFunction", "Omega": omega, "Psi0": 0.0, "AxisValue": [0, 0, 1]}
-        case = [*groups.items(), ("ContainerIn", rotor), ("CB", turn | {"rotation": True})]
+        groups |= {"ContainerIn": rotor, "CB": turn | {"rotation": True}}
+        for name, values in changes.items():
+            merged = groups[name] | values
+            groups[name] = {key: value for key, value in merged.items() if value is not None}
+        case = [*groups.items()]
         for blade in range(n_blades):
             angle = 2 * np.pi * blade / n_blades
             files = {"patchGeometryFile": "geometry.dat", "patchLoadingFile": "loading.dat"}

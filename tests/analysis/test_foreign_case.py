@@ -12,7 +12,7 @@ import pytest
 from propmdao.acoustics.sources.formulation1a import tones
 from propmdao.analysis.foreign_case import run_case
 from propmdao.formats.wopwop.binary import WopwopFileError
-from propmdao.formats.wopwop.namelists import read_namelists, write_namelists
+from propmdao.formats.wopwop.namelists.groups import read_namelists, write_namelists
 from propmdao.formats.wopwop.sources import thickness_sources
 from propmdao.formats.wopwop.zones import Zone
 from propmdao.records.air import Air
@@ -145,7 +145,20 @@ def test_a_case_that_is_wholly_understood_warns_of_nothing(make_case):
         ({"ObserverIn": {"xMin": float("nan")}}, "xmin must be a number; it is nan"),
         ({"EnvironmentIn": {"nbSourceContainers": 2}}, "&containerin is missing"),
         ({"EnvironmentIn": {"nbObserverContainers": 2}}, "&observerin expected here"),
-        ({"ObserverIn": {"nt": 1}}, "nt must be 2 or more"),
+        ({"ObserverIn": {"nt": 1}}, r"nt must be a whole number, 2 \.\.\. 1048576; it is 1$"),
+        ({"ObserverIn": {"nt": 10**12}}, r"2 \.\.\. 1048576; it is 1000000000000$"),
+        ({"ObserverIn": {"nbz": 10**9}}, r"nbz must be a whole number, 1 \.\.\. 10000; it is"),
+        ({"ObserverIn": {"nbx": 5000, "nby": 5000}}, "nbx x nby x nbz must be at most 10000"),
+        ({"ObserverIn": {"nt": 1 << 20, "nbx": 100}}, "at most 10000 observers and 16777216 press"),
+        ({"ObserverIn": {"tMax": 1e300}}, r"tmax must be -1e\+12 \.\.\. 1e\+12; it is 1e\+300"),
+        (
+            {"ContainerIn": {"dTau": 1e-15}},
+            "dTau must be 5.95e-08 s or more, for a rec",
+        ),
+        ({"ContainerIn": {"dTau": -1e-3}}, "dTau must be 5.95e-08 s or more"),
+        ({"EnvironmentIn": {"loadingNoiseFlag": 3}}, "loadingnoiseflag must be .true. or .false.;"),
+        ({"CB": {"Omega": 5.0, "AngleType": None}}, "omega needs AngleType 'KnownFunction'"),
+        ({"CB": {"windFrame": True}}, "a wind frame"),
         ({"ObserverIn": {"attachedTo": "tail"}}, "attachedTo 'tail': there is no such container"),
         ({"ObserverIn": {"attachedTo": "Blade 1"}}, "observers must be fixed or in uniform motion"),
         ({"omega": 800.0}, "sources must be slower than sound"),
@@ -196,3 +209,123 @@ def test_loads_that_do_not_fit(make_case, loading):
         run_case(make_case(loading=dataclasses.replace(loading, zones=(short,))))
     with pytest.raises(WopwopFileError, match="mixed frame"):
         run_case(make_case(loading=dataclasses.replace(loading, frame=2)))
+
+
+def rewritten(folder, change):
+    """Change the groups of a case, a list of (name, values)."""
+    groups = [(group.name, dict(group.values)) for group in read_namelists(folder / "case.nam")]
+    change(groups)
+    write_namelists(folder / "case.nam", groups)
+    return folder
+
+
+def pitched(folder, **angle):
+    """Let each blade pitch about its own axis, within its azimuth."""
+
+    def change(groups):
+        for place in reversed(range(len(groups))):
+            if "anglevalue" in groups[place][1]:
+                groups[place - 1][1]["nbbase"] = 2
+                pitch = {"AngleType": "Periodic", "A0": 0.02, "A1": 0.01, "B1": -0.03} | angle
+                groups.insert(place + 1, ("cb", pitch | {"AxisValue": [1, 0, 0]}))
+
+    return rewritten(folder, change)
+
+
+def test_a_periodic_angle_follows_the_rotor_around_it(make_case):
+    """PSU-WOPWOP takes psi from the base with rotation = .true.; ours had to be told Omega."""
+    told = run_case(pitched(make_case(), Omega=OMEGA))[0].pressure
+    found = run_case(pitched(make_case()))[0].pressure
+    np.testing.assert_array_equal(found.total, told.total)
+    still = run_case(make_case())[0].pressure
+    assert np.abs(found.loading - still.loading).max() > 0.01 * np.ptp(still.loading)
+
+
+def test_a_periodic_angle_counts_from_the_azimuth_of_the_rotor(make_case):
+    """A rotor that begins a quarter of a turn later, cos psi and sin psi exchanged to match."""
+    turned = run_case(pitched(make_case(CB={"Psi0": np.pi / 2})))[0].pressure
+    # psi = Omega t + pi/2: A1 cos psi + B1 sin psi = -A1 sin Omega t + B1 cos Omega t
+    told = pitched(make_case(CB={"Psi0": np.pi / 2}), Omega=OMEGA, A1=-0.03, B1=-0.01)
+    np.testing.assert_allclose(
+        turned.total, run_case(told)[0].pressure.total, rtol=1e-9, atol=1e-12
+    )
+
+
+def test_a_periodic_angle_without_a_rotor_is_refused(make_case):
+    with pytest.raises(WopwopFileError, match="needs an Omega, or rotation = .true. in a base aro"):
+        run_case(pitched(make_case(CB={"rotation": False})))
+
+
+def test_a_case_as_vspaero_writes_it(make_case):
+    """Names without quotes, no c, dTau = 0, groups without a slash, angles without a type."""
+    expected = run_case(make_case(EnvironmentConstants={"c": 342.0}, ContainerIn={"dTau": None}))
+    folder = make_case(EnvironmentConstants={"c": None}, ContainerIn={"dTau": 0.0})
+    text = (folder / "case.nam").read_text()
+    text = text.replace("'geometry.dat'", "geometry.dat").replace("'loading.dat'", "loading.dat")
+    text = text.replace("rho = 1.2\n/", "rho = 1.2\n").replace(
+        "AngleType = 'TimeIndependent'\n", "\n"
+    )
+    assert "geometry.dat\n" in text and "'TimeIndependent'" not in text
+    (folder / "case.nam").write_text(text + "&BPMIn nSect = 5 /\n&ContainerIn title = more /\n")
+    with pytest.warns(UserWarning) as caught:
+        results = run_case(folder)
+    np.testing.assert_array_equal(results[0].pressure.total, expected[0].pressure.total)
+    messages = [str(warning.message) for warning in caught]
+    assert [
+        any(part in message for message in messages)
+        for part in (
+            "c is not given; it is 342, as PSU-WOPWOP has it",
+            "it ends where the next begins",
+            "&bpmin has no effect",
+            "&containerin 'more': it has no effect: the case is complete before it",
+        )
+    ] == [True] * 4
+    assert len(messages) == 4
+
+
+def test_the_total_takes_thickness_and_loading(make_case):
+    """Flags as PSU-WOPWOP has them: off if not given, and the total needs both."""
+    both = run_case(make_case())[0].pressure
+    assert np.ptp(both.thickness) > 0 and np.ptp(both.loading) > 0
+    for flags, thickness, loading in (
+        ({"totalNoiseFlag": True, "thicknessNoiseFlag": False}, True, True),
+        ({"thicknessNoiseFlag": True}, True, False),
+        ({"loadingNoiseFlag": True, "thicknessNoiseFlag": False}, False, True),
+    ):
+        part = run_case(make_case(EnvironmentIn=flags))[0].pressure
+        np.testing.assert_array_equal(part.thickness, both.thickness * thickness)
+        np.testing.assert_array_equal(part.loading, both.loading * loading)
+
+
+def test_observers_in_the_frame_of_an_aircraft(make_case):
+    """Without a location, one stands where the bases of its own frame put it."""
+    asked = {"attachedTo": "aircraft", "nbBaseObsContFrame": 1, "nbBaseLocalFrame": 1}
+    folder = make_case(ObserverIn=asked | {f"nb{q}": None for q in "xyz"})
+
+    def change(groups):
+        names = [name for name, _ in groups]
+        observers, rotor = names.index("observerin"), names.index("containerin")
+        flight = ("cb", {"TranslationType": "KnownFunction", "VH": [0.0, 0.0, 5.0]})
+        groups[rotor:rotor] = [
+            ("containerin", {"title": "aircraft", "nbcontainer": 1, "nbbase": 1})
+        ]
+        groups[rotor + 1 : rotor + 1] = [flight]
+        groups[observers + 1 : observers + 1] = [
+            ("cb", {"TranslationValue": [3.0, 0.0, 0.0]}),
+            ("cb", {"TranslationValue": [0.0, 0.0, -2.0]}),
+        ]
+
+    (result,) = run_case(rewritten(folder, change))
+    np.testing.assert_allclose(result.pressure.position[0, 0], OBSERVERS[0])
+    way = result.pressure.position[0, -1] - OBSERVERS[0]
+    np.testing.assert_allclose(way, [0.0, 0.0, 5.0 * result.pressure.time[0, -1]])
+
+
+def test_containers_as_deep_as_no_case_has_them(make_case):
+    def change(groups):
+        place = [name for name, _ in groups].index("containerin")
+        groups[place:place] = [("containerin", {"title": "shell", "nbcontainer": 1})] * 3000
+
+    with pytest.raises(WopwopFileError, match="containers must be at most 50 deep") as caught:
+        run_case(rewritten(make_case(), change))
+    assert "\n" not in str(caught.value)

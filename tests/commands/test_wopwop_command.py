@@ -14,7 +14,7 @@ import pytest
 from propmdao.acoustics.kinematics.reception import Observers
 from propmdao.acoustics.sources.rotors import Rotor, equally_spaced
 from propmdao.commands.program import main
-from propmdao.formats.wopwop.namelists import read_namelists, write_namelists
+from propmdao.formats.wopwop.namelists.groups import read_namelists, write_namelists
 from propmdao.formats.wopwop.write_case import write_rotor_case
 from propmdao.records.air import Air
 from propmdao.records.loads import PointLoads

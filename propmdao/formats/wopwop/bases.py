@@ -2,20 +2,62 @@
 
 from __future__ import annotations
 
+import math
+from typing import NamedTuple
+
 import numpy as np
 from numpy.typing import NDArray
 
 from propmdao.acoustics.kinematics.motion import Frame, Motion, poses, rotation, translation
-from propmdao.formats.wopwop.namelists import HARMONICS, Group
+from propmdao.formats.wopwop.namelists.groups import Group
+from propmdao.formats.wopwop.namelists.keys import HARMONICS
+
+#: Largest number of observers of a case.
+MOST_OBSERVERS = 10_000
 
 
-def change_of_base(group: Group) -> Motion:
+class Turning(NamedTuple):
+    """Azimuth of a rotor, psi = rate t + angle, which periodic angles within it follow.
+
+    Attributes
+    ----------
+    rate : float
+        Rotation speed of the base with ``rotation = .true.`` [rad/s].
+    angle : float
+        Azimuth at time 0 [rad].
+    """
+
+    rate: float
+    angle: float
+
+
+def rotor_azimuth(group: Group) -> Turning | None:
+    """Azimuth that a change of base sets for what is within it.
+
+    Parameters
+    ----------
+    group : Group
+        Group ``&CB`` of a namelist.
+
+    Returns
+    -------
+    Turning or None
+        Azimuth of the rotor, None if the group is not its rotation.
+    """
+    if not group.flag("rotation") or "omega" not in group.values:
+        return None
+    return Turning(group.number("omega"), group.number("psi0", 0.0))
+
+
+def change_of_base(group: Group, rotor: Turning | None = None) -> Motion:
     """Frames of a ``&CB`` group, a change of base: its translation, then its rotation.
 
     Parameters
     ----------
     group : Group
         Group ``&CB`` of a namelist.
+    rotor : Turning, optional
+        Azimuth of the rotor around the base, for periodic angles without an Omega of their own.
 
     Returns
     -------
@@ -27,41 +69,63 @@ def change_of_base(group: Group) -> Motion:
     WopwopFileError
         If a type is not one of those computed: time-independent, known function or periodic.
     """
-    frames: list[Frame] = []
-    moves, turns = ((group.text(f"{kind}type") or "").lower() for kind in ("translation", "angle"))
-    if moves == "timeindependent":
-        frames.append(translation(group.vector("translationvalue")))
-    elif moves == "knownfunction":
-        frames.append(translation(*(group.vector(key) for key in ("y0", "vh", "ah"))))
-    elif moves:
-        raise group.error(
-            f"TranslationType {moves!r} is not computed, only TimeIndependent and KnownFunction"
-        )
-    if not turns:
+    if group.flag("windframe"):
+        raise group.error("a wind frame (windFrame) is not computed")
+    moves = _type(group, "translation", ("TimeIndependent", "KnownFunction"))
+    keys = ("translationvalue",) if moves == "timeindependent" else ("y0", "vh", "ah")
+    steps = [group.vector(key) for key in keys]
+    frames: list[Frame] = [translation(*steps)] if np.any(steps) else []
+    turns = _type(group, "angle", ("TimeIndependent", "KnownFunction", "Periodic"))
+    if turns == "timeindependent" and not group.number("anglevalue", 0.0):
         return tuple(frames)
-    axis_type = (group.text("axistype") or "timeindependent").lower()
     axis = group.vector("axisvalue")
-    if axis_type != "timeindependent" or not any(axis):
-        raise group.error(
-            "AxisType must be TimeIndependent with an AxisValue that is not zero; "
-            f"it is {axis_type!r} with {axis}"
-        )
+    _type(group, "axis", ("TimeIndependent",))
+    if not any(axis):
+        raise group.error("AxisValue must be three numbers, not all zero, where a base turns")
     if turns == "timeindependent":
         frames.append(rotation(axis, group.number("anglevalue")))
     elif turns == "knownfunction":
         frames.append(rotation(axis, group.number("psi0", 0.0), group.number("omega")))
-    elif turns == "periodic":
-        if group.number("psi0", 0.0):
-            raise group.error("Psi0 is not computed with AngleType 'periodic': psi is Omega t")
-        # A0 - A1 cos psi - B1 sin psi - ...
-        swing = [[-group.number(f"{q}{k}", 0.0) for k in HARMONICS] for q in "ab"]
-        mean, omega = group.number("a0", 0.0), group.number("omega")
-        frames.append(rotation(axis, mean, 0.0, swing, omega))
     else:
-        raise group.error(
-            f"AngleType {turns!r} is not computed, only TimeIndependent, KnownFunction and Periodic"
-        )
+        frames.append(_periodic(group, axis, rotor))
     return tuple(frames)
+
+
+# Keys that have an effect with the type KnownFunction only.
+_OF_FUNCTIONS = {"translation": ("ah", "vh", "y0"), "angle": ("omega", "psi0"), "axis": ()}
+
+
+def _type(group: Group, kind: str, known: tuple[str, ...]) -> str:
+    """Return the type of a translation, angle or axis; time-independent if it is not given."""
+    written = group.text(f"{kind}type")
+    if written is None:
+        for key in _OF_FUNCTIONS[kind]:
+            value = group.values.get(key)
+            if any(value) if isinstance(value, list) else value:
+                raise group.error(f"{key} needs {kind.capitalize()}Type 'KnownFunction'")
+    chosen = (written or known[0]).lower()
+    if chosen not in map(str.lower, known):
+        raise group.error(
+            f"{kind.capitalize()}Type {written!r} is not computed, only {' and '.join(known)}"
+        )
+    return chosen
+
+
+def _periodic(group: Group, axis: tuple[float, float, float], rotor: Turning | None) -> Frame:
+    """Angle A0 - A1 cos psi - B1 sin psi - ... with the azimuth psi of the rotor."""
+    if group.number("psi0", 0.0):
+        raise group.error("Psi0 is not computed with AngleType 'periodic': psi is the rotor's")
+    if "omega" in group.values:
+        rotor = Turning(group.number("omega"), 0.0)
+    if rotor is None:
+        raise group.error(
+            "AngleType 'periodic' needs an Omega, or rotation = .true. in a base around this one"
+        )
+    a, b = ([group.number(f"{q}{k}", 0.0) for k in HARMONICS] for q in "ab")
+    # cos k psi and sin k psi in terms of cos and sin of k times rate t
+    turned = (np.array(a) - 1j * np.array(b)) * np.exp(1j * rotor.angle * np.array(HARMONICS))
+    swing = [-turned.real, turned.imag]
+    return rotation(axis, group.number("a0", 0.0), 0.0, swing, rotor.rate)
 
 
 def uniform_motion(
@@ -115,24 +179,31 @@ def observer_points(group: Group) -> NDArray[np.float64]:
     WopwopFileError
         If the group describes the observers in another way.
     """
-
-    def line(name: str, count: str) -> NDArray[np.float64]:
-        n = group.count(count, 1)
-        return np.linspace(group.number(f"{name}min"), group.number(f"{name}max"), max(n, 1))
-
     if "filename" in group.values:
         raise group.error(
             "observers of a file (fileName) are not read: give xLoc ..., nbx ... or radius ..."
         )
     if "radius" in group.values:
-        theta, psi = line("theta", "nbtheta"), line("psi", "nbpsi")
-        psi, theta = (a.ravel() for a in np.meshgrid(psi, theta, indexing="ij"))
+        theta, psi = _grid(group, {"theta": "nbtheta", "psi": "nbpsi"})
         x, y, z = np.cos(psi) * np.cos(theta), np.cos(psi) * np.sin(theta), np.sin(psi)
         return group.number("radius") * np.stack([x, y, z], axis=-1)
-    if "xloc" in group.values:
+    if {"nbx", "nby", "nbz"} & group.values.keys():
+        return np.stack(_grid(group, {q: f"nb{q}" for q in "xyz"}), axis=-1)
+    if {"xloc", "yloc", "zloc", "attachedto"} & group.values.keys():
         return np.array([[group.number(f"{q}loc", 0.0) for q in "xyz"]])
-    if "nbx" in group.values:
-        x, y, z = (line(q, f"nb{q}") for q in "xyz")
-        z, y, x = (a.ravel() for a in np.meshgrid(z, y, x, indexing="ij"))
-        return np.stack([x, y, z], axis=-1)
     raise group.error("observers must be given as xLoc ..., nbx ... or radius ...")
+
+
+def _grid(group: Group, axes: dict[str, str]) -> list[NDArray[np.float64]]:
+    """Coordinates of all points of a grid, the first of the axes fastest."""
+    counts = [group.count(key, 1, 1, MOST_OBSERVERS) for key in axes.values()]
+    if math.prod(counts) > MOST_OBSERVERS:
+        raise group.error(
+            f"{' x '.join(axes.values())} must be at most {MOST_OBSERVERS} observers; "
+            f"they are {math.prod(counts)}"
+        )
+    lines = [
+        np.linspace(group.number(f"{name}min"), group.number(f"{name}max"), n)
+        for name, n in zip(axes, counts, strict=True)
+    ]
+    return [a.ravel() for a in np.meshgrid(*lines[::-1], indexing="ij")][::-1]

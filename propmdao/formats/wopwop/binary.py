@@ -5,6 +5,7 @@ The opening that geometry and loading files share is here, too.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from pathlib import Path
 from typing import NamedTuple
@@ -103,7 +104,7 @@ class Reader:
 
     def floats(self, *shape: int) -> Floats:
         """Return the next floats in an array of a shape, last axis fastest."""
-        raw = self._take(4 * int(np.prod(shape)))
+        raw = self._take(4 * math.prod(shape))  # NumPy's product overflows
         return np.frombuffer(raw, f"{self.byte_order}f4").reshape(shape).astype(np.float32)
 
     def text(self, n: int) -> str:

@@ -6,13 +6,21 @@ import warnings
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from propmdao.acoustics.kinematics.motion import Frame, Motion
-from propmdao.formats.wopwop.bases import change_of_base, observer_points, uniform_motion
-from propmdao.formats.wopwop.namelists import Group, read_namelists
+from propmdao.formats.wopwop.bases import (
+    MOST_OBSERVERS,
+    Turning,
+    change_of_base,
+    observer_points,
+    rotor_azimuth,
+    uniform_motion,
+)
+from propmdao.formats.wopwop.namelists.groups import Group, read_namelists
 
 # Groups that may follow a container or observer, and what they are about, which is not computed.
 _ELSEWHERE = {
@@ -21,6 +29,11 @@ _ELSEWHERE = {
     "bwiin": "broadband noise of this container",
     "rangein": "the frequency range of the spectra",
 }
+# Air of PSU-WOPWOP 3.4.3 where a case does not give it: kg/m^3, m/s.
+_USUAL_AIR = {"rho": 1.225, "c": 342.0}
+# Containers within each other, times of a record, pressures of a case (0.4 GiB for each source) and
+# source times in a record, beyond which a file is damaged rather than a case.
+_DEEPEST, _MOST_TIMES, _MOST_PRESSURES, _MOST_STEPS = 50, 1 << 20, 1 << 24, 1 << 20
 
 
 @dataclass(frozen=True)
@@ -136,36 +149,47 @@ def read_cases(folder: str | Path) -> list[Case]:
     return cases
 
 
+class _Surrounding(NamedTuple):
+    """What a container hands on to those within it."""
+
+    motion: Motion = ()
+    rotor: Turning | None = None
+    step: float | None = None
+    depth: int = 1
+
+
 @dataclass
 class _Parser:
     """Takes the groups of a case file one after another: their order says what belongs together."""
 
     groups: list[Group]
     position: int = 0
+    n_observers: int = 0
+    n_pressures: int = 0
+    longest: float = 0.0
     containers: list[Container] = field(default_factory=list)
     chains: dict[str, Motion] = field(default_factory=dict)
 
     def case(self, name: str) -> Case:
         environment = self.take("environmentin")
-        if environment.values.get("broadbandflag"):
-            warnings.warn(f"{environment}: broadband noise is not computed", stacklevel=4)
-        air = self.take("environmentconstants")
-        density, sound_speed = air.number("rho"), air.number("c")
-        if not (density > 0 and sound_speed > 0):
-            raise air.error(f"rho and c must be positive; they are {density:g}, {sound_speed:g}")
-        later: list[Callable[[], ObserverGrid]] = []
-        for _ in range(environment.count("nbobservercontainers", 1)):
-            later.append(self.observers())
-        for _ in range(environment.count("nbsourcecontainers", 1)):
-            self.container((), None)
-        if self.position < len(self.groups):
-            raise self.groups[self.position].error("one group more than the containers ask for")
+        thickness, loading = _sources(environment)
+        density, sound_speed = self.air()
+        later = [self.observers() for _ in range(environment.count("nbobservercontainers", 1, 1))]
+        for _ in range(environment.count("nbsourcecontainers", 1, 1)):
+            self.container(_Surrounding())
+        if left := len(self.groups) - self.position:
+            also = f" and the {left - 1} behind it" if left > 1 else ""
+            warnings.warn(
+                f"{self.groups[self.position]}: it{also} has no effect: the case is complete "
+                "before it",
+                stacklevel=4,
+            )
         return Case(
             name,
             density,
             sound_speed,
-            bool(environment.values.get("thicknessnoiseflag", True)),
-            bool(environment.values.get("loadingnoiseflag", True)),
+            thickness,
+            loading,
             tuple(self.containers),
             tuple(make() for make in later),  # only now are the containers known to attach to
         )
@@ -179,13 +203,30 @@ class _Parser:
         self.position += 1
         return group
 
-    def chain(self, owner: Group) -> Motion:
+    def air(self) -> tuple[float, float]:
+        air = self.take("environmentconstants")
+        for key, usual in _USUAL_AIR.items():
+            if key not in air.values:
+                warnings.warn(
+                    f"{air}: {key} is not given; it is {usual:g}, as PSU-WOPWOP has it",
+                    stacklevel=5,
+                )
+        density, sound_speed = (air.number(key, usual) for key, usual in _USUAL_AIR.items())
+        if not (density > 0 and sound_speed > 0):
+            raise air.error(f"rho and c must be positive; they are {density:g}, {sound_speed:g}")
+        return density, sound_speed
+
+    def chain(
+        self, owner: Group, key: str, rotor: Turning | None = None
+    ) -> tuple[Motion, Turning | None]:
+        """Return the changes of base that follow a group, and the rotor that they are within."""
         motion: list[Frame] = []
-        left = owner.count("nbbase", 0)
+        left = owner.count(key, 0)
         while left or self.next_is_elsewhere():
             group = self.take("cb", *_ELSEWHERE)
             if group.name == "cb":
-                motion += change_of_base(group)
+                motion += change_of_base(group, rotor)
+                rotor = rotor_azimuth(group) or rotor
                 left -= 1
             else:
                 warnings.warn(
@@ -193,21 +234,20 @@ class _Parser:
                     "is not computed",
                     stacklevel=5,
                 )
-        return tuple(motion)
+        return tuple(motion), rotor
 
     def next_is_elsewhere(self) -> bool:
         return self.position < len(self.groups) and self.groups[self.position].name in _ELSEWHERE
 
-    def container(self, outer: Motion, step: float | None) -> None:
+    def container(self, around: _Surrounding) -> None:
         group = self.take("containerin")
-        motion = (*outer, *self.chain(group))
-        if "dtau" in group.values:
-            step = group.number("dtau")
-        elif "ntau" in group.values:
-            steps = max(group.count("ntau") - 1, 1)
-            step = (group.number("taumax") - group.number("taumin")) / steps
-        if step is not None and not step > 0:
-            raise group.error(f"dTau must be positive; it is {step:g}")
+        if around.depth > _DEEPEST:
+            raise group.error(f"containers must be at most {_DEEPEST} deep within each other")
+        own, rotor = self.chain(group, "nbbase", around.rotor)
+        motion = (*around.motion, *own)
+        step = _step(group, self.longest)
+        if step is None:
+            step = around.step
         title = group.text("title") or ""
         self.chains[title.lower()] = motion
         geometry, loading = (group.text(f"patch{kind}file") for kind in ("geometry", "loading"))
@@ -226,27 +266,62 @@ class _Parser:
                 )
             )
         for _ in range(group.count("nbcontainer", 0)):
-            self.container(motion, step)
+            self.container(_Surrounding(motion, rotor, step, around.depth + 1))
 
     def observers(self) -> Callable[[], ObserverGrid]:
         group = self.take("observerin")
-        own = self.chain(group)
-        n, t_min, t_max = group.count("nt"), group.number("tmin"), group.number("tmax")
-        if n < 2 or not t_max > t_min:
-            raise group.error(f"nt must be 2 or more, tMax above tMin; got {n}, {t_min}, {t_max}")
+        own, _ = self.chain(group, "nbbase")
+        around, _ = self.chain(group, "nbbaseobscontframe")
+        local, _ = self.chain(group, "nbbaselocalframe")
+        n = group.count("nt", least=2, most=_MOST_TIMES)
+        t_min, t_max = group.number("tmin"), group.number("tmax")
+        if not t_max > t_min:
+            raise group.error(f"tMax must be above tMin; they are {t_max:g} and {t_min:g}")
         band = (
             group.number("highpassfrequency", 0.0),
             group.number("lowpassfrequency", np.inf),
         )
         points = observer_points(group)
+        self.n_observers += len(points)
+        self.n_pressures += n * len(points)
+        self.longest = max(self.longest, t_max - t_min)
+        if self.n_observers > MOST_OBSERVERS or self.n_pressures > _MOST_PRESSURES:
+            raise group.error(
+                f"a case must have at most {MOST_OBSERVERS} observers and {_MOST_PRESSURES} "
+                f"pressures, nt of each observer; with this group it has {self.n_observers} and "
+                f"{self.n_pressures}"
+            )
 
         def place_observers() -> ObserverGrid:
             attached = group.text("attachedto")
             if attached and attached.lower() not in self.chains:
                 raise group.error(f"attachedTo {attached!r}: there is no such container")
-            chain = (*self.chains[attached.lower()], *own) if attached else own
+            chain = (*around, *(self.chains[attached.lower()] if attached else ()), *local, *own)
             position, velocity = uniform_motion(group, chain, points)
             times = np.linspace(t_min, t_max, n)
             return ObserverGrid(group.text("title") or "", position, velocity, times, band)
 
         return place_observers
+
+
+def _sources(environment: Group) -> tuple[bool, bool]:
+    """Return whether thickness and loading noise are wanted: the total takes both."""
+    thickness, loading, total = (
+        environment.flag(f"{name}noiseflag") for name in ("thickness", "loading", "total")
+    )
+    total = total or not (thickness or loading)
+    return thickness or total, loading or total
+
+
+def _step(group: Group, longest: float) -> float | None:
+    """Step of the source times that a container gives; 0 is PSU-WOPWOP's for none."""
+    step = group.number("dtau", 0.0)
+    if step == 0.0 and group.count("ntau", 0):
+        step = (group.number("taumax") - group.number("taumin")) / group.count("ntau")
+    least = longest / _MOST_STEPS
+    if step and not step >= least:
+        raise group.error(
+            f"dTau must be {least:.3g} s or more, for a record of {longest:.3g} s, "
+            f"or 0 for the observers' step; it is {step:g}"
+        )
+    return step or None

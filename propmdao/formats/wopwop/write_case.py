@@ -16,7 +16,7 @@ from propmdao.acoustics.sources.rotors import Rotor
 from propmdao.formats.wopwop.blade_files import blade_geometry, blade_loading
 from propmdao.formats.wopwop.geometry_file import write_geometry
 from propmdao.formats.wopwop.loading_file import write_loading
-from propmdao.formats.wopwop.namelists import write_namelists
+from propmdao.formats.wopwop.namelists.groups import write_namelists
 from propmdao.records.air import Air
 
 Groups = list[tuple[str, Mapping[str, Any]]]

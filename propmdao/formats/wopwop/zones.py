@@ -129,10 +129,13 @@ def read_header(file: Reader, layout: Layout, has_faces: bool) -> ZoneHeader:
     Raises
     ------
     WopwopFileError
-        If a face has fewer than three nodes or a node that does not exist.
+        If a face has fewer than three nodes or a node that does not exist, or a period is not
+        positive.
     """
     name = file.text(32)
     period = float(file.floats(1)[0]) if layout.time == PERIODIC else None
+    if period is not None and not 0 < period < np.inf:
+        raise file.error(f"the period of zone {name!r} must be positive; it is {period:g} s")
     n_times = file.count("number of times of a zone") if layout.time != CONSTANT else None
     if layout.grid == STRUCTURED:
         i_max, j_max = file.count("iMax"), file.count("jMax")
@@ -193,7 +196,8 @@ def read_zones(
                 normals[zone].append(file.floats(3, *head.shape_of_faces))
     file.end()
     for zone, head in enumerate(headers):
-        if not all(np.isfinite(block).all() for block in (*values[zone], *normals[zone])):
+        blocks: list[Floats] = [*values[zone], *normals[zone], np.array(keys[zone])]
+        if not all(np.isfinite(block).all() for block in blocks):
             raise file.error(f"zone {head.name!r} holds infinities or NaN")
     return tuple(
         Zone(

@@ -270,3 +270,19 @@ class TestPressure:
         Path(f"{stem}.{ending}").write_text(content, encoding="latin-1")
         with pytest.raises(WopwopFileError, match=message):
             read_pressure(stem)
+
+
+@pytest.mark.parametrize("value", [0.0, -1.0, float("nan"), float("inf")])
+def test_a_period_is_positive_and_times_are_numbers(tmp_path, loading, value):
+    zone = in_time(loading.zones[0], 0.25)
+    file = tmp_path / "l.dat"
+    write_loading(file, dataclasses.replace(loading, zones=(zone,)))
+    good = file.read_bytes()
+    period = good.index(np.float32(0.25).tobytes())
+    file.write_bytes(good[:period] + np.float32(value).tobytes() + good[period + 4 :])
+    with pytest.raises(WopwopFileError, match="the period of zone 'line loads' must be positive"):
+        read_loading(file)
+    key = good.index(np.float32(0.2).tobytes())
+    file.write_bytes(good[:key] + np.float32(np.nan).tobytes() + good[key + 4 :])
+    with pytest.raises(WopwopFileError, match="zone 'line loads' holds infinities or NaN"):
+        read_loading(file)
