@@ -1,4 +1,4 @@
-"""Time of the self-noise of a rotor: 24 strips, 24 azimuths, 30 bands, one and nine observers."""
+"""Time of a rotor's self-noise: 24 strips, 24 azimuths, 30 bands, one and nine observers."""
 
 from __future__ import annotations
 
