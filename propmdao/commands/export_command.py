@@ -25,7 +25,7 @@ DESCRIPTION = f"""\
 A propeller in a file that other programs read. The ending says which:
 
 {_FILES}
-  none   folder of a PSU-WOPWOP case: blade, loads at --rpm or --thrust, observers
+  other  folder of a PSU-WOPWOP case: blade, loads at --rpm or --thrust, observers
 """
 
 EXAMPLES = """\
@@ -71,24 +71,24 @@ def add_export(commands: argparse._SubParsersAction[Any]) -> None:
 def _export(options: argparse.Namespace) -> None:
     path, ending = options.to, options.to.suffix.lower()
     writer = PROPELLER_WRITERS.get(ending)
-    if ending and writer is None:
+    driven = options.rpm is not None or options.thrust is not None
+    if ending and writer is None and not driven:
         raise ValueError(
             f"--to {path}: there is no export to {ending!r}; a file ends in"
-            f" {', '.join(PROPELLER_WRITERS)}, a PSU-WOPWOP case in nothing"
+            f" {', '.join(PROPELLER_WRITERS)}, a PSU-WOPWOP case (--rpm, --thrust) in no such"
         )
     if not path.absolute().parent.is_dir():
         raise ValueError(f"--to {path}: there is no folder {path.parent}")
-    if path.is_dir() and ending:
+    if path.is_dir() and writer is not None:
         raise ValueError(f"--to {path}: it is a folder")
     if (options.section is not None) != (writer is not None and writer.of_section):
         sections = " or ".join(e for e, form in PROPELLER_WRITERS.items() if form.of_section)
         raise ValueError(
             f"a {sections} file is of one section, and only that has --section R_OVER_R"
         )
-    driven = options.rpm is not None or options.thrust is not None
-    if ending and driven:
+    if writer is not None and driven:
         raise ValueError(f"a {ending} file holds no loads: --rpm and --thrust do not go along")
-    if not ending and not driven:
+    if writer is None and not driven:
         raise ValueError("a PSU-WOPWOP case holds loads: it needs --rpm or --thrust")
     # Slow to import, so only once the arguments are known to be good.
     from propmdao.formats.propellers import load_propeller

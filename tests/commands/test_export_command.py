@@ -67,9 +67,11 @@ def test_a_surface_is_written(tmp_path: Path, capsys: pytest.CaptureFixture[str]
 
 
 @pytest.mark.slow
-def test_a_case_of_psu_wopwop_is_read_again(tmp_path: Path) -> None:
-    assert export(tmp_path / "case", *"--rpm 4200 --speed 8 --arc 1.905 -45 0".split()) == 0
-    (case,) = read_cases(tmp_path / "case")
+@pytest.mark.parametrize("name", ["case", "case_5269.99"])
+def test_a_case_of_psu_wopwop_is_read_again(tmp_path: Path, name: str) -> None:
+    """An ending that is no format, as a rotation speed in the name, belongs to the folder."""
+    assert export(tmp_path / name, *"--rpm 4200 --speed 8 --arc 1.905 -45 0".split()) == 0
+    (case,) = read_cases(tmp_path / name)
     assert len(case.observers) == 2 and len(case.containers) == 2
 
 
