@@ -115,11 +115,11 @@ def _run(case: Case, progress: tqdm) -> list[CaseResult]:
     histories = [silence(_observers(q.position, q.velocity), q.times) for q in case.observers]
     for batch in _batches(case.observers):
         first = case.observers[batch[0][0]]
-        position = np.array([case.observers[grid].position[row] for grid, row in batch])
+        position = np.array([case.observers[number].position[row] for number, row in batch])
         together = _batch_history(case, patches, _observers(position, first.velocity), first.times)
         for name, pressure in together.parts.items():
-            for (grid, row), own in zip(batch, pressure, strict=True):
-                histories[grid].parts[name][row] = own
+            for (number, row), own in zip(batch, pressure, strict=True):
+                histories[number].parts[name][row] = own
         progress.update(len(set(batch)))
     return [
         CaseResult(case.name, grid.title, _pressure(case, grid, history))
