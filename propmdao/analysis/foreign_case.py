@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import contextlib
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import NamedTuple
@@ -9,6 +11,7 @@ from typing import NamedTuple
 import jax.numpy as jnp
 import numpy as np
 from numpy.typing import NDArray
+from tqdm import tqdm
 
 from propmdao.acoustics.kinematics.reception import Observers, require_outside, source_times
 from propmdao.acoustics.signals import PressureHistory
@@ -28,6 +31,9 @@ from propmdao.formats.wopwop.sources import (
 from propmdao.formats.wopwop.zones import Zone
 from propmdao.records.air import Air
 from propmdao.runtime.finite import require_finite
+
+# Observers at once: what is the same for all is done once for so many, and progress is seen.
+_AT_ONCE = 16
 
 
 @dataclass(frozen=True)
@@ -68,19 +74,87 @@ def run_case(folder: str | Path) -> list[CaseResult]:
         If a file is missing, broken or asks for what is not computed, in one line.
     NotFiniteError
         If a pressure would be no number.
+
+    Notes
+    -----
+    Progress is shown on stderr where that is a terminal.
     """
+    cases = read_cases(folder)
+    n_observers = sum(len(grid.position) for case in cases for grid in case.observers)
+    # On stderr, where that is a terminal.
+    with tqdm(total=n_observers, desc="wopwop", unit="observer", disable=None) as progress:
+        return [result for case in cases for result in _run(case, progress)]
+
+
+class _Patch(NamedTuple):
+    """Zone of a geometry file, as a surface if it is heard as one, and its loads."""
+
+    name: str
+    container: Container
+    zone: Zone
+    surface: Zone | None
+    load: Zone | None
+    file: LoadingFile | None
+
+    @contextlib.contextmanager
+    def named(self) -> Iterator[None]:
+        """Name the zone in what is raised about it."""
+        try:
+            yield
+        except ValueError as error:
+            raise WopwopFileError(f"{self.name}: {error}") from None
+
+
+def _run(case: Case, progress: tqdm) -> list[CaseResult]:
+    patches = [patch for container in case.containers for patch in _patches(case, container)]
+    for grid in case.observers:
+        for patch in patches:
+            with patch.named():
+                observers = _observers(grid.position, grid.velocity)
+                points = source_points(patch.zone)
+                require_outside(
+                    patch.container.motion, points, observers, grid.times, "the sources"
+                )
+    histories = [silence(_observers(q.position, q.velocity), q.times) for q in case.observers]
+    for batch in _batches(case.observers):
+        first = case.observers[batch[0][0]]
+        position = np.array([case.observers[number].position[row] for number, row in batch])
+        together = _batch_history(case, patches, _observers(position, first.velocity), first.times)
+        for name, pressure in together.parts.items():
+            for (number, row), own in zip(batch, pressure, strict=True):
+                histories[number].parts[name][row] = own
+        progress.update(len(set(batch)))
     return [
-        CaseResult(case.name, grid.title, _pressure(case, grid))
-        for case in read_cases(folder)
-        for grid in case.observers
+        CaseResult(case.name, grid.title, _pressure(case, grid, history))
+        for grid, history in zip(case.observers, histories, strict=True)
     ]
 
 
-def _pressure(case: Case, grid: ObserverGrid) -> PressureHistories:
-    observers = Observers(jnp.asarray(grid.position), jnp.asarray(grid.velocity))
-    history = silence(observers, grid.times)
-    for container in case.containers:
-        history = history + _container(case, container, observers, grid.times)
+def _observers(position: NDArray[np.float64], velocity: NDArray[np.float64]) -> Observers:
+    return Observers(jnp.asarray(position), jnp.asarray(velocity))
+
+
+def _batches(grids: Sequence[ObserverGrid]) -> Iterator[list[tuple[int, int]]]:
+    """Observers of all grids that move alike and listen at the same times, some at once.
+
+    Each is the number of its grid and its row there. Neighbours in distance go together, for all
+    of a batch hear the same source times. The last batch of several is filled up with its last
+    observer: it runs the same compiled code.
+    """
+    alike: dict[bytes, list[tuple[float, int, int]]] = {}
+    for number, grid in enumerate(grids):
+        key = np.array([*grid.velocity, grid.times.size, *grid.times[[0, -1]]]).tobytes()
+        distance = np.linalg.norm(grid.position, axis=1)
+        alike.setdefault(key, []).extend((d, number, row) for row, d in enumerate(distance))
+    for members in alike.values():
+        places = [(number, row) for _, number, row in sorted(members)]
+        size = min(len(places), _AT_ONCE)
+        for start in range(0, len(places), size):
+            batch = places[start : start + size]
+            yield batch + batch[-1:] * (size - len(batch))
+
+
+def _pressure(case: Case, grid: ObserverGrid, history: PressureHistory) -> PressureHistories:
     times = [f"{t:g} s" for t in grid.times]
     for name, pressure in history.parts.items():
         require_finite(f"{name} noise", pressure, "observer", times, where=f", in {case.name}")
@@ -93,18 +167,7 @@ def _pressure(case: Case, grid: ObserverGrid) -> PressureHistories:
     )
 
 
-class _Patch(NamedTuple):
-    """Zone of a geometry file, as a surface if it is heard as one, and its loads."""
-
-    zone: Zone
-    surface: Zone | None
-    load: Zone | None
-    file: LoadingFile | None
-
-
-def _container(
-    case: Case, container: Container, observers: Observers, times: NDArray[np.float64]
-) -> PressureHistory:
+def _patches(case: Case, container: Container) -> Iterator[_Patch]:
     geometry = read_geometry(container.geometry)
     data = None if container.loading is None else read_loading(container.loading)
     loads = {} if data is None else dict(zip(data.zone_numbers, data.zones, strict=True))
@@ -113,35 +176,32 @@ def _container(
             f"{container.loading}: made for {data.n_geometry_zones} zones; "
             f"{container.geometry} has {len(geometry.zones)}"
         )
-    history = silence(observers, times)
     for number, zone in enumerate(geometry.zones, start=1):
         surface = None if is_line(zone) or -number in loads or not case.thickness else zone
         load = loads.get(number, loads.get(-number)) if case.loading else None
-        if surface is None and load is None:
-            continue
-        try:
-            patch = _Patch(zone, surface, load, data)
-            history = history + _patch_history(case, container, patch, observers, times)
-        except ValueError as error:
-            raise WopwopFileError(
-                f"{container.geometry}: zone {number} {zone.name!r}: {error}"
-            ) from None
+        if surface is not None or load is not None:
+            name = f"{container.geometry}: zone {number} {zone.name!r}"
+            yield _Patch(name, container, zone, surface, load, data)
+
+
+def _batch_history(
+    case: Case, patches: Sequence[_Patch], observers: Observers, times: NDArray[np.float64]
+) -> PressureHistory:
+    history = silence(observers, times)
+    for patch in patches:
+        with patch.named():
+            history = history + _patch_history(case, patch, observers, times)
     return history
 
 
 def _patch_history(
-    case: Case,
-    container: Container,
-    patch: _Patch,
-    observers: Observers,
-    times: NDArray[np.float64],
+    case: Case, patch: _Patch, observers: Observers, times: NDArray[np.float64]
 ) -> PressureHistory:
     """Thickness noise of a zone if it is a surface, loading noise if it has loads."""
+    _, container, zone, surface, load, file = patch
     motion, offset = container.motion, container.key_offset
     air = Air(density=case.density, sound_speed=case.sound_speed)
-    zone, surface, load, file = patch
     points = source_points(zone)
-    require_outside(motion, points, observers, times, "the sources")
     changing = any(q is not None and q.keys is not None for q in (zone, load))
     turned = file is not None and file.frame == 1
     history = silence(observers, times)

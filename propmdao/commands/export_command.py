@@ -15,7 +15,7 @@ from propmdao.commands.options import (
     number,
 )
 from propmdao.commands.warning_lines import warning_lines
-from propmdao.formats.endings import PROPELLER_WRITERS
+from propmdao.formats.endings import PROPELLER_WRITERS, STL_UNITS
 
 if TYPE_CHECKING:
     from propmdao.propeller.description import Propeller
@@ -25,12 +25,12 @@ DESCRIPTION = f"""\
 A propeller in a file that other programs read. The ending says which:
 
 {_FILES}
-  none   folder of a PSU-WOPWOP case: blade, loads at --rpm or --thrust, observers
+  other  folder of a PSU-WOPWOP case: blade, loads at --rpm or --thrust, observers
 """
 
 EXAMPLES = """\
 examples:
-  propmdao export apcsf_11x4.7 --to blades.stl
+  propmdao export apcsf_11x4.7 --to blades.stl --units mm
   propmdao export apcsf_11x4.7 --to my_blade.toml
   propmdao export apcsf_11x4.7 --section 0.75 --to section_75.dat
   propmdao export apcsf_11x4.7 --rpm 4200 --speed 8 --arc 1.905 -45 0 --to my_case
@@ -63,6 +63,9 @@ def add_export(commands: argparse._SubParsersAction[Any]) -> None:
     command.add_argument(
         "--section", type=number, metavar="R_OVER_R", help="r/R of the section in a .dat file"
     )
+    command.add_argument(
+        "--units", choices=STL_UNITS, help="unit of length of an .stl file, m by default"
+    )
     names = ("rpm", "thrust", "speed", "density", "twist_offset_deg", "viscous")
     add_asked(command, names, required=False)
     add_observers(command)
@@ -71,24 +74,26 @@ def add_export(commands: argparse._SubParsersAction[Any]) -> None:
 def _export(options: argparse.Namespace) -> None:
     path, ending = options.to, options.to.suffix.lower()
     writer = PROPELLER_WRITERS.get(ending)
-    if ending and writer is None:
+    driven = options.rpm is not None or options.thrust is not None
+    if ending and writer is None and not driven:
         raise ValueError(
             f"--to {path}: there is no export to {ending!r}; a file ends in"
-            f" {', '.join(PROPELLER_WRITERS)}, a PSU-WOPWOP case in nothing"
+            f" {', '.join(PROPELLER_WRITERS)}, a PSU-WOPWOP case (--rpm, --thrust) in no such"
         )
     if not path.absolute().parent.is_dir():
         raise ValueError(f"--to {path}: there is no folder {path.parent}")
-    if path.is_dir() and ending:
+    if path.is_dir() and writer is not None:
         raise ValueError(f"--to {path}: it is a folder")
     if (options.section is not None) != (writer is not None and writer.of_section):
         sections = " or ".join(e for e, form in PROPELLER_WRITERS.items() if form.of_section)
         raise ValueError(
             f"a {sections} file is of one section, and only that has --section R_OVER_R"
         )
-    driven = options.rpm is not None or options.thrust is not None
-    if ending and driven:
+    if options.units is not None and (writer is None or not writer.in_units):
+        raise ValueError("--units is of an .stl file: all else is in metres")
+    if writer is not None and driven:
         raise ValueError(f"a {ending} file holds no loads: --rpm and --thrust do not go along")
-    if not ending and not driven:
+    if writer is None and not driven:
         raise ValueError("a PSU-WOPWOP case holds loads: it needs --rpm or --thrust")
     # Slow to import, so only once the arguments are known to be good.
     from propmdao.formats.propellers import load_propeller
@@ -100,12 +105,14 @@ def _export(options: argparse.Namespace) -> None:
         _write_case(options, propeller)
         return
     propeller = Change(options.twist_offset_deg).applied_to(propeller)
-    section = [options.section] if writer.of_section else []
+    unit = options.units or "m"
+    third = [options.section] if writer.of_section else [unit] if writer.in_units else []
     try:
-        n_items = writer(path, propeller, *section)
+        n_items = writer(path, propeller, *third)
     except OSError as error:
         raise ValueError(f"--to {path}: {error.strerror or error}") from None
-    print(f"{path}: {propeller.name}, {n_items} {writer.items}")
+    lengths = f", {STL_UNITS[unit][0]}" if writer.in_units else ""
+    print(f"{path}: {propeller.name}, {n_items} {writer.items}{lengths}")
 
 
 def _write_case(options: argparse.Namespace, propeller: Propeller) -> None:

@@ -180,7 +180,7 @@ def _print(groups: Sequence[dict[str, Any]]) -> None:
     def table(*headings: str) -> Table:
         made = Table(box=box.SIMPLE, pad_edge=False, collapse_padding=True)
         for heading in headings:
-            made.add_column(heading, justify="right")
+            made.add_column(heading, justify="right", overflow="fold")
         return made
 
     console = Console()
@@ -198,12 +198,12 @@ def _print(groups: Sequence[dict[str, Any]]) -> None:
         )  # fmt: skip
         keys = ("oaspl_thickness_db", "oaspl_loading_db", "oaspl_db", "oaspl_dba")
         for observer in observers:
-            loudest = max(observer["peaks"], key=lambda peak: float(peak["spl_db"]))
+            loudest = max(observer["peaks"], key=_loudness, default=None)
             overall.add_row(
                 str(observer["observer"]),
-                *(f"{x:.4g}" for x in observer["position"]),
+                *map(_metres, observer["position"]),
                 *(_level(observer[key]) for key in keys),
-                f"{loudest['frequency_hz']:.1f}",
+                "-" if loudest is None else f"{loudest['frequency_hz']:.1f}",
             )
         console.print(overall)
         top = max(observers, key=lambda observer: float(observer["oaspl_db"]))
@@ -213,6 +213,15 @@ def _print(groups: Sequence[dict[str, Any]]) -> None:
             peaks.add_row(f"{frequency:.1f}", *map(_level, peak_levels))
         console.print(f"Tones at observer {top['observer']}, the loudest:", highlight=False)
         console.print(peaks)
+
+
+def _loudness(peak: dict[str, float]) -> float:
+    return peak["spl_db"]
+
+
+def _metres(value: float) -> str:
+    # Tenths of a millimetre: what rounding leaves of a sine or cosine is 0.
+    return f"{round(value, 4) + 0.0:.5g}"
 
 
 def _level(value: float) -> str:

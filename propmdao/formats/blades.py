@@ -8,6 +8,7 @@ from pathlib import Path
 import jax.numpy as jnp
 import numpy as np
 
+from propmdao.formats.endings import STL_UNITS
 from propmdao.formats.stl import rotor_triangles, write_stl
 from propmdao.geometry.blade import Blade, span_interpolation
 from propmdao.geometry.meshes import propeller_surface
@@ -22,9 +23,10 @@ _SECTION_POINTS = 161
 def export_stl(
     path: str | Path,
     propeller: Propeller,
+    unit: str = "m",
     fidelity: Fidelity = Fidelity(),  # noqa: B008 - frozen
 ) -> int:
-    """Write the skin of all blades as a binary STL file, in metres.
+    """Write the skin of all blades as a binary STL file.
 
     Parameters
     ----------
@@ -32,6 +34,8 @@ def export_stl(
         File to write.
     propeller : Propeller
         Propeller to write.
+    unit : {"m", "mm"}
+        Unit of the coordinates: STL does not hold it, so the title of the file says it.
     fidelity : Fidelity
         Resolution, of which `n_contour` and `n_surface_span` count here.
 
@@ -39,10 +43,18 @@ def export_stl(
     -------
     int
         Number of triangles.
+
+    Raises
+    ------
+    ValueError
+        If the unit is another one.
     """
+    if unit not in STL_UNITS:
+        raise ValueError(f"unit of an STL file must be one of {', '.join(STL_UNITS)}; got {unit!r}")
+    name, scale = STL_UNITS[unit]
     nodes = propeller_surface(propeller, fidelity.n_contour, fidelity.n_surface_span)
-    triangles = rotor_triangles(nodes, propeller.n_blades)
-    write_stl(path, triangles, f"propmdao {propeller.name}, metres")
+    triangles = rotor_triangles(scale * nodes, propeller.n_blades)
+    write_stl(path, triangles, f"{name}: propmdao {propeller.name}")
     return len(triangles)
 
 

@@ -42,10 +42,13 @@ class PropellerWriter(FileFormat):
         Name of the items that are counted: stations, triangles.
     of_section : bool
         True if the file holds one section, whose r/R the function takes as its third argument.
+    in_units : bool
+        True if the file has a unit of length, which the function takes as its third argument.
     """
 
     items: str = "stations"
     of_section: bool = False
+    in_units: bool = False
 
 
 @dataclass(frozen=True)
@@ -73,12 +76,16 @@ PROPELLER_READERS = {
     ".dat": _UIUC,
 }
 
+#: Units of STL files: the name of each, and how many of it are a metre.
+STL_UNITS = {"m": ("metres", 1.0), "mm": ("millimetres", 1000.0)}
+
 #: Writers of propellers: functions of a path and a `Propeller`.
 PROPELLER_WRITERS = {
     ".stl": PropellerWriter(
-        "closed surface of all blades, outward, binary, in metres (no hub)",
+        "closed surface of all blades, outward, binary (no hub), in --units",
         "propmdao.formats.blades:export_stl",
-        "triangles, metres",
+        "triangles",
+        in_units=True,
     ),
     ".toml": PropellerWriter(
         "propeller file, as propmdao reads it", "propmdao.formats.toml_files:write_toml"

@@ -12,6 +12,9 @@ from propmdao.geometry.surface import surface_quads
 
 Triangles = npt.NDArray[np.float32]
 
+# Of the radius: single precision resolves 6e-8 of it, printers and CAD far less than this.
+_LEAST_GAP = 1e-5
+
 _FACET = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
 
 
@@ -31,7 +34,7 @@ def rotor_triangles(nodes: npt.ArrayLike, n_blades: int) -> Triangles:
         Corners of the triangles [m], counter-clockwise seen from outside, in single precision as
         STL has them. Every edge is shared by two triangles.
     """
-    a, b, c, d = (np.asarray(q) for q in surface_quads(jnp.asarray(nodes)))
+    a, b, c, d = (np.asarray(q) for q in surface_quads(jnp.asarray(_sharpened(nodes))))
     blade = np.concatenate([np.stack([a, b, c], axis=1), np.stack([a, c, d], axis=1)])
     angle = 2.0 * np.pi * np.arange(n_blades) / n_blades
     cos, sin = np.cos(angle), np.sin(angle)
@@ -42,6 +45,18 @@ def rotor_triangles(nodes: npt.ArrayLike, n_blades: int) -> Triangles:
     # Leading edge, sharp trailing edge: where two corners are one, the neighbours meet.
     merged = np.any(np.all(triangles == np.roll(triangles, 1, axis=1), axis=2), axis=1)
     return triangles[~merged]
+
+
+def _sharpened(nodes: npt.ArrayLike) -> npt.NDArray[np.float64]:
+    """Nodes with both ends of a section as one where its trailing edge has next to no thickness.
+
+    A trailing edge that ends in rounding alone would become faces without area.
+    """
+    sharp = np.array(nodes, float)
+    least = _LEAST_GAP * np.abs(sharp).max()
+    closed = np.linalg.norm(sharp[0] - sharp[-1], axis=-1) < least
+    sharp[0, closed] = sharp[-1, closed] = 0.5 * (sharp[0, closed] + sharp[-1, closed])
+    return sharp
 
 
 def write_stl(path: str | Path, triangles: Triangles, title: str) -> None:

@@ -9,6 +9,7 @@ import jax.numpy as jnp
 import numpy as np
 import pytest
 
+import propmdao.analysis.foreign_case as foreign_case
 from propmdao.acoustics.sources.formulation1a import tones
 from propmdao.analysis.foreign_case import run_case
 from propmdao.formats.wopwop.binary import WopwopFileError
@@ -329,3 +330,40 @@ def test_containers_as_deep_as_no_case_has_them(make_case):
     with pytest.raises(WopwopFileError, match="containers must be at most 50 deep") as caught:
         run_case(rewritten(make_case(), change))
     assert "\n" not in str(caught.value)
+
+
+def test_observers_run_together_hear_what_each_hears_alone(make_case, monkeypatch):
+    """Far and near ones in two grids, in batches of three of which the last is filled up."""
+    grid = {"nbx": 2, "xMin": 3.0, "xMax": 40.0, "nby": 2, "yMin": -1.0, "yMax": 5.0}
+
+    def change(groups):
+        place = [name for name, _ in groups].index("observerin")
+        alone = {key: q for key, q in groups[place][1].items() if key[:2] not in ("nb", "xm", "ym")}
+        alone = {key: q for key, q in alone.items() if key[:2] != "zm"}
+        groups[place + 1 : place + 1] = [
+            ("observerin", alone | {"title": "alone", "xloc": 7.0, "zloc": -1.0})
+        ]
+
+    folder = rewritten(
+        make_case(ObserverIn=grid, EnvironmentIn={"nbObserverContainers": 2}), change
+    )
+    monkeypatch.setattr(foreign_case, "_AT_ONCE", 1)
+    alone = run_case(folder)
+    monkeypatch.setattr(foreign_case, "_AT_ONCE", 3)
+    together = run_case(folder)
+    assert [len(result.pressure.total) for result in together] == [4, 1]
+    assert [result.observers for result in together] == ["microphones", "alone"]
+    for one, other in zip(alone, together, strict=True):
+        np.testing.assert_allclose(other.pressure.position, one.pressure.position)
+        # other source times: the error of the interpolation
+        scale = np.abs(one.pressure.total).max(axis=1, keepdims=True)
+        assert (np.abs(other.pressure.total - one.pressure.total) < 1e-4 * scale).all()
+
+
+def test_pressures_that_are_no_numbers_are_refused(make_case, monkeypatch):
+    def broken(name, sources, motion, tau, observers, times, air):
+        return np.full((len(observers.position), times.size), np.nan)
+
+    monkeypatch.setattr(foreign_case, "source_history", broken)
+    with pytest.raises(WopwopFileError, match="256 of 256 pressures at 'microphones' could not be"):
+        run_case(make_case())

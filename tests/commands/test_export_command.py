@@ -68,12 +68,16 @@ def test_a_surface_is_written(tmp_path: Path, capsys: pytest.CaptureFixture[str]
     assert export(tmp_path / "BLADE.STL") == 0
     n = (len((tmp_path / "BLADE.STL").read_bytes()) - 84) // 50
     assert f"{n} triangles, metres" in capsys.readouterr().out
+    assert export(tmp_path / "mm.stl", "--units", "mm") == 0
+    assert f"{n} triangles, millimetres" in capsys.readouterr().out
 
 
 @pytest.mark.slow
-def test_a_case_of_psu_wopwop_is_read_again(tmp_path: Path) -> None:
-    assert export(tmp_path / "case", *"--rpm 4200 --speed 8 --arc 1.905 -45 0".split()) == 0
-    (case,) = read_cases(tmp_path / "case")
+@pytest.mark.parametrize("name", ["case", "case_5269.99"])
+def test_a_case_of_psu_wopwop_is_read_again(tmp_path: Path, name: str) -> None:
+    """An ending that is no format, as a rotation speed in the name, belongs to the folder."""
+    assert export(tmp_path / name, *"--rpm 4200 --speed 8 --arc 1.905 -45 0".split()) == 0
+    (case,) = read_cases(tmp_path / name)
     assert len(case.observers) == 2 and len(case.containers) == 2
 
 
@@ -86,6 +90,8 @@ def test_a_case_of_psu_wopwop_is_read_again(tmp_path: Path) -> None:
         ("--to b.csv --section 0.5", "a .dat file is of one section"),
         ("--to b.dat --section 0.01", "r_over_R must be within the blade's stations"),
         ("--to b.stl --rpm 4000", "a .stl file holds no loads"),
+        ("--to b.csv --units mm", "--units is of an .stl file"),
+        ("--to case --rpm 4000 --units mm", "--units is of an .stl file"),
         ("--to case", "it needs --rpm or --thrust"),
         ("--to case --rpm 4000", "a PSU-WOPWOP case needs observers"),
         ("", "required: --to"),

@@ -160,3 +160,20 @@ def test_help_explains_the_options(capsys: pytest.CaptureFixture[str]):
     assert exit_.value.code == 0
     text = capsys.readouterr().out
     assert all(option in text for option in ("CASEDIR", "--json", "--out", "examples:"))
+
+
+def test_coordinates_are_whole_in_tables(folder: Path, capsys: pytest.CaptureFixture[str]):
+    """What rounding leaves of a cosine is 0; nothing is cut where the terminal is narrow."""
+    change(folder, "observerin", xloc=-1234.5, yloc=2.565e-16, zloc=-0.34567)
+    assert main(["wopwop", str(folder)]) == 0
+    text = capsys.readouterr().out
+    line = next(line for line in text.splitlines() if line.strip().startswith("1 "))
+    assert line.split()[1:4] == ["-1234.5", "0", "-0.3457"]
+    assert "\u2026" not in text
+
+
+def test_silence_is_a_dash(folder: Path, capsys: pytest.CaptureFixture[str]):
+    change(folder, "environmentin", loadingnoiseflag=False, totalnoiseflag=False)
+    assert main(["wopwop", str(folder)]) == 0
+    line = next(q for q in capsys.readouterr().out.splitlines() if q.strip().startswith("1 "))
+    assert line.split()[4:7] == ["-", "-", "-"]

@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from propmdao.formats.blades import export_stl
 from propmdao.formats.propellers import load_propeller
 from propmdao.formats.stl import rotor_triangles, write_stl
 from propmdao.geometry.blade import Blade
@@ -16,6 +17,8 @@ from propmdao.geometry.surface import (
     surface_nodes,
     surface_panels,
 )
+from propmdao.propeller.catalog import catalog_names
+from propmdao.propeller.description import Propeller
 
 
 def skin(name: str, n_contour: int = 21, n_span: int = 12) -> np.ndarray:
@@ -38,6 +41,45 @@ def nodes(request: pytest.FixtureRequest) -> np.ndarray:
 def directed_edges(triangles: np.ndarray) -> Counter[tuple[bytes, bytes]]:
     corners = [[corner.tobytes() for corner in triangle] for triangle in triangles]
     return Counter((t[k], t[(k + 1) % 3]) for t in corners for k in range(3))
+
+
+README_BLADE = Propeller(
+    name="my_blade",
+    diameter=0.30,
+    n_blades=3,
+    r_over_R=np.array([0.15, 0.40, 0.70, 1.0]),
+    c_over_R=np.array([0.12, 0.20, 0.18, 0.05]),
+    beta_deg=np.array([30.0, 22.0, 14.0, 9.0]),
+    airfoils=((0.15, "e63"), (1.0, "clarky")),
+)
+
+
+@pytest.mark.parametrize("name", [*catalog_names(), "my_blade"])
+@pytest.mark.parametrize("unit", ["m", "mm"])
+def test_every_blade_is_watertight_and_has_no_face_without_area(
+    name: str, unit: str, tmp_path: Path
+) -> None:
+    """Single precision, as in the file: each edge once in either direction, no sliver.
+
+    The blade of the README is sharp at its root to 6 nm, which rounding made faces without area.
+    """
+    propeller = README_BLADE if name == "my_blade" else load_propeller(name)
+    assert export_stl(tmp_path / "blade.stl", propeller, unit) > 1000
+    raw = (tmp_path / "blade.stl").read_bytes()
+    assert raw[:20].decode("ascii").startswith({"m": "metres: ", "mm": "millimetres: "}[unit])
+    facet = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
+    triangles = np.frombuffer(raw[84:], facet)["corners"]
+    edges = directed_edges(triangles)
+    assert set(edges.values()) == {1}
+    assert all((end, start) in edges for start, end in edges)
+    corners = triangles.astype(float)
+    sides = np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=2)
+    area = 0.5 * np.linalg.norm(
+        np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1
+    )
+    tip = np.linalg.norm(corners[..., :2], axis=-1).max()
+    assert tip == pytest.approx({"m": 0.5, "mm": 500.0}[unit] * propeller.diameter, rel=2e-3)
+    assert (2 * area / sides.max(axis=1)).min() > 1e-6 * tip  # height over the longest side
 
 
 @pytest.mark.parametrize("n_blades", [1, 3])
