@@ -121,6 +121,7 @@ def _flyover(options: argparse.Namespace) -> None:
     # Slow to import, so only once the arguments are known to be good.
     from propmdao.analysis.flyover_results import Flight
     from propmdao.analysis.request import Request
+    from propmdao.analysis.sounds import require_sound
     from propmdao.formats.propellers import load_propeller
 
     flight = Flight(
@@ -130,6 +131,9 @@ def _flyover(options: argparse.Namespace) -> None:
         options.duration,
         not options.no_absorption,
     )
+    duration = flight.heard_for(options.speed)
+    if options.wav is not None:
+        require_sound(1, duration, options.full_scale)
     Request.of(**asked)
     from propmdao.analysis.flyovers import fly_over
     from propmdao.analysis.single_point import analyze

@@ -10,6 +10,10 @@ import soundfile  # type: ignore[import-untyped]
 from numpy.typing import ArrayLike
 
 from propmdao.acoustics.sounds.recordings import SAMPLE_RATE
+from propmdao.records.quantities import Range
+
+#: Pressure of the largest number in a file.
+FULL_SCALE = Range(1e-9, 1e9, "Pa")
 
 
 class Recording(NamedTuple):
@@ -64,13 +68,13 @@ def write_wav(
     Raises
     ------
     ValueError
-        If the pressure is not finite or would be clipped, or the number of bits is another one.
+        If the pressure is not finite or would be clipped, the full scale is out of range, or the
+        number of bits is another one.
     """
     p = np.asarray(pressure, float)
     if bits not in _CODING:
         raise ValueError(f"bits of a sound file must be 24 or 32; got {bits}")
-    if not (np.isfinite(full_scale) and full_scale > 0):
-        raise ValueError(f"full scale must be positive and finite [Pa]; got {full_scale:g}")
+    FULL_SCALE.require("full scale", full_scale)
     if p.ndim not in (1, 2) or p.size == 0:
         raise ValueError(f"a sound file holds (n_channels, n_times) pressures; got {p.shape}")
     if not np.all(np.isfinite(p)):

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import dataclasses
 
+from propmdao.propeller.checks import PropellerError
 from propmdao.propeller.description import Propeller
+from propmdao.records.quantities import require_asked
 
 
 @dataclasses.dataclass(frozen=True)
@@ -21,12 +23,24 @@ class Change:
         Diameter to which the whole blade is stretched [m]; None: as described.
     n_blades : int or None
         Number of blades; None: as described.
+
+    Raises
+    ------
+    PropellerError
+        If a value is out of range.
     """
 
     twist_offset_deg: float = 0.0
     chord_factor: float = 1.0
     diameter: float | None = None
     n_blades: int | None = None
+
+    def __post_init__(self) -> None:
+        """Refuse changes that are out of range whatever the propeller."""
+        for field in dataclasses.fields(self):
+            value = getattr(self, field.name)
+            if value is not None:
+                require_asked(field.name, value, PropellerError)
 
     def applied_to(self, propeller: Propeller) -> Propeller:
         """Change a propeller.

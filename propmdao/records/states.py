@@ -4,10 +4,9 @@ from __future__ import annotations
 
 import dataclasses
 
-import numpy as np
-
 from propmdao.records.air import Air
 from propmdao.records.pytrees import Scalar, record
+from propmdao.records.quantities import require_asked
 from propmdao.records.units import RAD_PER_S
 
 
@@ -69,20 +68,14 @@ class OperatingPoint:
         """Refuse points without exactly one of rpm and thrust, or with values out of range."""
         if (self.rpm is None) == (self.thrust is None):
             raise ValueError("give either rpm or thrust")
-        if self.rpm is not None and not 0.0 <= self.rpm < np.inf:
-            raise ValueError(f"rpm must be 0 or more; it is {self.rpm:g}")
-        if self.thrust is not None and not 0.0 < self.thrust < np.inf:
-            raise ValueError(f"thrust must be positive; it is {self.thrust:g} N")
-        if not 0.0 <= self.speed < np.inf:
-            raise ValueError(f"speed must be 0 m/s or more; it is {self.speed:g}")
-        for name, unit in (
-            ("density", "kg/m3"),
-            ("sound_speed", "m/s"),
-            ("dynamic_viscosity", "Pa s"),
-        ):
-            value = getattr(self.air, name)
-            if not 0.0 < value < np.inf:
-                raise ValueError(f"{name} must be positive; it is {value:g} {unit}")
+        if self.rpm is not None:
+            require_asked("rpm", self.rpm)
+        if self.thrust is not None:
+            require_asked("thrust", self.thrust)
+        require_asked("speed", self.speed)
+        # Not by Air itself, which JAX makes of what it traces.
+        for field in dataclasses.fields(self.air):
+            require_asked(field.name, getattr(self.air, field.name))
 
     def at(self, rotation_speed: Scalar) -> RotorState:
         """State of the rotor at a rotation speed.

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import dataclasses
+import math
 import subprocess
 import sys
 import time
@@ -228,10 +229,14 @@ def test_another_blade_of_the_same_name_is_another_point(
     [
         ([{"speed": 1.0}], "needs either rpm or thrust_required"),
         ([{"rpm": 1.0, "thrust_required": 1.0}], "needs either rpm or thrust_required"),
-        ([{"rpm": 1.0}, {"thrust_required": 1.0}], "in all of them rpm or in all"),
-        ([], "needs points"),
+        ([{"rpm": 1.0}, {"thrust_required": 1.0}], "in all points rpm or in all"),
+        ([], "number of points must be within 1 ... 100000; it is 0"),
         ([{"rpm": 1.0, "sped": 1.0}], "'sped' is no variable"),
         ([{"rpm": 1.0, "n_blades": 2.5}], "n_blades must be a whole number; it is 2.5"),
+        ([{"rpm": 1.0, "n_blades": 1000}], "n_blades must be within 1 ... 40; it is 1000"),
+        ([{"rpm": 1.0}, {"rpm": 1e300}], "rpm must be 0 or within .* rpm; it is 1e"),
+        ([{"rpm": math.nan}], "rpm must be 0 or within .* rpm; it is nan"),
+        ([{"rpm": 1.0}] * 100_001, "number of points must be within 1 ... 100000; it is 100001"),
     ],
 )
 def test_points_that_are_none(
