@@ -31,6 +31,8 @@ from propmdao.records.quantities import (
     require_asked,
 )
 from propmdao.runtime.input_files import read_text
+from propmdao.runtime.locks import locked
+from propmdao.runtime.output_files import make_folder, require_writable
 from propmdao.runtime.worker_processes import results_in_order, start_workers
 
 Point = dict[str, float]
@@ -182,7 +184,7 @@ def sweep(
     ------
     ValueError
         When the points do not say what turns the propeller, a value of theirs is out of range, or
-        the file is of another sweep.
+        the file is of another sweep, cannot be written or is in use by another one.
     WorkerLostError
         When a worker dies; the rows so far are in the table.
     """
@@ -202,10 +204,14 @@ def sweep(
     levels = [*LEVELS, *(BROADBAND_LEVELS if same["broadband"] else ())]
     results = [name for name in _RESULTS if name not in point_columns]
     results += [name + suffix for suffix in suffixes for name in levels] + [_WARNINGS]
-    table = ResultTable(csv_file, point_columns, results)
-    new = [complete[place] for place in table.missing(complete)]
     analysed = partial(_analysed, propeller, asked, suffixes)
+    make_folder(csv_file.parent)
     with ExitStack() as stack:
+        stack.enter_context(locked(csv_file))
+        table = ResultTable(csv_file, point_columns, results)
+        if parquet_file is not None:
+            require_writable(parquet_file)
+        new = [complete[place] for place in table.missing(complete)]
         rows: Iterator[tuple[dict[str, Any], str]] = map(analysed, new)
         if n_workers > 1:
             workers = stack.enter_context(start_workers(n_workers))
@@ -213,8 +219,8 @@ def sweep(
         for point in tqdm(new, desc="sweep", unit="point", disable=None):
             values, reason = next(rows)
             table.add(point, {name: values[name] for name in results if name in values}, reason)
-    if parquet_file is not None:
-        table.write_parquet(parquet_file)
+        if parquet_file is not None:
+            table.write_parquet(parquet_file)
     return len(new), table.failures(complete)
 
 

@@ -22,7 +22,7 @@ from propmdao.commands.options import (
     asked_of,
     number,
 )
-from propmdao.commands.output_files import require_figures, require_writable, save_figures
+from propmdao.commands.output_files import require_figures, require_output, save_figures
 from propmdao.commands.warning_lines import warning_lines
 from propmdao.formats.endings import POLAR_READERS, described
 from propmdao.records.quantities import ASKED
@@ -192,9 +192,9 @@ def _check(options: argparse.Namespace) -> None:
     if options.full_scale is not None and options.wav is None:
         raise ValueError("--full-scale is of a sound file: add --wav FILE.wav")
     if options.wav is not None:
-        require_writable("--wav", options.wav, ".wav")
+        require_output("--wav", options.wav, ".wav")
     if options.figures is not None:
-        require_figures("--figures")
+        require_figures("--figures", options.figures)
 
 
 def _check_sound(options: argparse.Namespace, n_observers: int) -> None:

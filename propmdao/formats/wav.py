@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 from pathlib import Path
 from typing import NamedTuple
 
@@ -11,6 +12,7 @@ from numpy.typing import ArrayLike
 
 from propmdao.acoustics.sounds.recordings import SAMPLE_RATE
 from propmdao.records.quantities import Range
+from propmdao.runtime.output_files import replacing
 
 #: Pressure of the largest number in a file.
 FULL_SCALE = Range(1e-9, 1e9, "Pa")
@@ -69,7 +71,7 @@ def write_wav(
     ------
     ValueError
         If the pressure is not finite or would be clipped, the full scale is out of range, or the
-        number of bits is another one.
+        number of bits is another one, or the file cannot be written.
     """
     p = np.asarray(pressure, float)
     if bits not in _CODING:
@@ -84,11 +86,15 @@ def write_wav(
         raise ValueError(
             f"pressure would be clipped: its peak is {peak:.4g} Pa, full scale {full_scale:.4g} Pa"
         )
+    # In memory first: the library does not say why a file could not be written.
+    content = io.BytesIO()
     with soundfile.SoundFile(
-        path, "w", sample_rate, np.atleast_2d(p).shape[0], _CODING[bits], format="WAV"
-    ) as file:
-        file.comment = f"full scale = {full_scale:.9g} Pa"
-        file.write(p.T / full_scale)
+        content, "w", sample_rate, np.atleast_2d(p).shape[0], _CODING[bits], format="WAV"
+    ) as sound:
+        sound.comment = f"full scale = {full_scale:.9g} Pa"
+        sound.write(p.T / full_scale)
+    with replacing(path) as file:
+        file.write_bytes(content.getbuffer())
     return Recording(Path(path), full_scale, peak, p.shape[-1] / sample_rate)
 
 

@@ -15,6 +15,7 @@ import f90nml  # type: ignore[import-untyped]
 
 from propmdao.formats.wopwop.binary import WopwopFileError
 from propmdao.runtime.input_files import read_text
+from propmdao.runtime.output_files import replacing
 
 #: Numbers of the harmonics of angles that change periodically, A1 ... and B1 ...
 HARMONICS = range(1, 10)
@@ -144,11 +145,17 @@ def write_namelists(path: str | Path, groups: Iterable[tuple[str, Mapping[str, A
         File to write.
     groups : iterable of (str, mapping)
         Names and values of the groups, in the order of the file; names may repeat.
+
+    Raises
+    ------
+    OutputError
+        If the file cannot be written.
     """
     out = io.StringIO()
     for name, values in groups:
         f90nml.Namelist({name: dict(values)}).write(out)
-    Path(path).write_text(out.getvalue(), encoding="latin-1")
+    with replacing(path) as file:
+        file.write_text(out.getvalue(), encoding="latin-1")
 
 
 def _is_number(value: Any) -> bool:
