@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import os
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -20,6 +21,8 @@ from propmdao.components.drivers.evaluation.model_runner import (
 from propmdao.components.drivers.progress import declare_progress, progress_bar
 from propmdao.components.drivers.same_model import require_same_results
 from propmdao.formats.result_table import ResultTable, Value, table_files
+from propmdao.runtime.locks import locked
+from propmdao.runtime.output_files import make_folder, require_writable
 
 Sample = dict[str, dict[str, Any]]
 
@@ -87,8 +90,16 @@ class SweepDriver(om.AnalysisDriver):
             self._problem().get_outputs_dir() / self.options["table"]
         )
         samples = self._checked_samples()
+        make_folder(csv_file.parent)
+        with locked(csv_file):
+            return self._complete(csv_file, parquet_file, samples)
+
+    def _complete(self, csv_file: Path, parquet_file: Path | None, samples: list[Sample]) -> bool:
+        """Run the samples that the table does not have; whether every sample has failed."""
         points = [_point(sample) for sample in samples]
         table = ResultTable(csv_file, list(points[0]), list(self._results()))
+        if parquet_file is not None:
+            require_writable(parquet_file)
         self._initial = self._outputs().asarray(copy=True)
         self._require_same_model(table, samples, points)
         missing = table.missing(points)

@@ -10,8 +10,8 @@ from propmdao.components.bases.array_function import Arrays
 from propmdao.components.bases.nodes_comp import NodesComp
 from propmdao.records.air import Air
 from propmdao.records.pytrees import Scalar
-from propmdao.records.quantities import AIR, ASKED
-from propmdao.records.states import RotorState, require_operable
+from propmdao.records.quantities import AIR, ASKED, require_asked
+from propmdao.records.states import RotorState
 
 #: Names of all properties of the air; each of them may be an input.
 AIR_INPUTS = tuple(name for name, quantity in ASKED.items() if quantity.record == AIR)
@@ -51,7 +51,7 @@ def check_point_inputs(inputs: Arrays) -> None:
     try:
         for name in ("rpm", "speed", *AIR_INPUTS):
             if name in inputs:
-                require_operable(name, inputs[name].item())
+                require_asked(name, inputs[name].item())
     except ValueError as error:
         raise om.AnalysisError(str(error)) from error
 

@@ -5,13 +5,13 @@ from __future__ import annotations
 import csv
 import os
 from collections.abc import Mapping, Sequence
-from pathlib import Path
 
 from rich import box
 from rich.console import Console
 from rich.table import Table
 
 from propmdao.analysis.single_point import Analysis
+from propmdao.runtime.output_files import replacing
 
 Row = tuple[str, str, str]
 Cell = float | str | None
@@ -75,7 +75,7 @@ def print_comparison(
     table.add_column("", no_wrap=True)
     for heading in headings:
         table.add_column(heading, justify="right")
-    with Path(file).open("w", newline="", encoding="utf-8") as stream:
+    with replacing(file) as whole, whole.open("w", newline="", encoding="utf-8") as stream:
         writer = csv.writer(stream)
         writer.writerow(["", *(heading.replace("\n", " ") for heading in headings)])
         for label, key, form in rows:

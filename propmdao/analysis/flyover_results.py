@@ -15,9 +15,13 @@ from propmdao.acoustics.levels.perceived_noise import PERCEIVED_BANDS_HZ
 from propmdao.acoustics.levels.time_levels import sound_exposure_level_db
 from propmdao.acoustics.levels.weighting import level_dba
 from propmdao.analysis.self_noise import BANDS_HZ
+from propmdao.records.listening import HEIGHT
+from propmdao.records.quantities import Range
 
 #: Of the levels [s], as in certification.
 STEP = 0.5
+_SIDELINE = Range(-1e6, 1e6, "m")
+_DURATION = Range(4 * STEP, 1200.0, "s")
 
 Floats = npt.NDArray[np.float64]
 
@@ -55,17 +59,43 @@ class Flight:
 
     def __post_init__(self) -> None:
         """Refuse flights that pass no microphone."""
-        if not 0.0 < self.height < np.inf:
-            raise ValueError(f"height of flight must be positive [m]; it is {self.height:g}")
-        if not np.isfinite(self.sideline):
-            raise ValueError(f"sideline distance must be finite [m]; it is {self.sideline:g}")
+        HEIGHT.require("height of flight", self.height)
+        _SIDELINE.require("sideline distance", self.sideline)
         if not 0.0 <= self.microphone_height < self.height:
             raise ValueError(
                 f"microphone must be between the ground and the flight at {self.height:g} m; it is"
                 f" at {self.microphone_height:g} m"
             )
-        if self.duration is not None and not 4 * STEP <= self.duration < np.inf:
-            raise ValueError(f"duration must be {4 * STEP:g} s or more; it is {self.duration:g}")
+        if self.duration is not None:
+            _DURATION.require("duration", self.duration)
+
+    def heard_for(self, speed: float) -> float:
+        """Time over which the propeller is heard.
+
+        Parameters
+        ----------
+        speed : float
+            Speed of the flight, positive [m/s].
+
+        Returns
+        -------
+        float
+            The duration, or what it is by default [s].
+
+        Raises
+        ------
+        ValueError
+            If the default is out of range, so that a duration has to be given.
+        """
+        if self.duration is not None:
+            return self.duration
+        by_default = max(20.0, 12.0 * self.miss_distance / speed)
+        if by_default not in _DURATION:
+            raise ValueError(
+                f"a flyover at {speed:g} m/s past {self.miss_distance:g} m takes"
+                f" {by_default:.4g} s, at most {_DURATION.highest:g} s are heard: give a duration"
+            )
+        return by_default
 
     @property
     def miss_distance(self) -> float:

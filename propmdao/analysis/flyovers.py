@@ -13,7 +13,7 @@ from propmdao.acoustics.propagation.absorption import absorb
 from propmdao.acoustics.propagation.reflection import bands_with_reflection
 from propmdao.acoustics.signals import PressureHistory
 from propmdao.acoustics.sounds.changing_sound import absorbed_record, changing_noise
-from propmdao.acoustics.sounds.recordings import SAMPLE_RATE
+from propmdao.acoustics.sounds.recordings import MOST_SAMPLES, SAMPLE_RATE
 from propmdao.acoustics.sources.flyover import flyover_histories
 from propmdao.acoustics.sources.rotors import Rotor, equally_spaced
 from propmdao.analysis.flyover_results import STEP, Flight, Flyover
@@ -27,9 +27,6 @@ from propmdao.propeller.description import Propeller
 from propmdao.records.air import require_known_air
 from propmdao.records.models import SelfNoiseModel
 from propmdao.runtime.finite import require_finite
-
-_MAX_SAMPLES = 30_000_000
-_MAX_DURATION = 1200.0  # s
 
 Floats = npt.NDArray[np.float64]
 
@@ -77,12 +74,12 @@ def fly_over(analysis: Analysis, flight: Flight, *, sound: bool = False) -> Flyo
     highest = emitted / (1.0 - speed / sound_speed)  # heard from ahead
     rate = SAMPLE_RATE if sound else max(2000, 2 * round(2.0 * highest))
     each = 2 * round(0.5 * STEP * rate)
-    duration = flight.duration or max(20.0, 12.0 * flight.miss_distance / speed)
+    duration = flight.heard_for(speed)
     n_steps = int(np.ceil(duration / STEP - 1e-9))
-    longest = min(_MAX_DURATION, _MAX_SAMPLES / rate)
-    if duration > longest:
+    if duration * rate > MOST_SAMPLES:
         raise ValueError(
-            f"a flyover of {duration:.0f} s is too long: at most {longest:.0f} s; give a duration"
+            f"a flyover of {duration:.0f} s is too long: at most {MOST_SAMPLES / rate:.0f} s at"
+            f" {rate} samples per second; give a duration"
         )
     start = flight.miss_distance / sound_speed - 0.5 * n_steps * STEP
     places = [[0.0, flight.sideline, flight.microphone_height]]

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import math
 from pathlib import Path
 
 import numpy as np
 import numpy.typing as npt
 
 from propmdao.acoustics.sounds.recordings import (
+    MOST_SAMPLES,
     SAMPLE_RATE,
     broadband_record,
     common_full_scale,
@@ -15,8 +17,10 @@ from propmdao.acoustics.sounds.recordings import (
 )
 from propmdao.analysis.results import Analysis
 from propmdao.analysis.self_noise import BANDS_HZ
-from propmdao.formats.wav import Recording, write_wav
+from propmdao.formats.wav import FULL_SCALE, Recording, write_wav
+from propmdao.records.quantities import Range
 
+_SHORTEST = 0.01  # s
 MAX_CHANNELS = 64  # more than any player has; programs that show sound hold them
 
 
@@ -49,23 +53,33 @@ def pressure_record(analysis: Analysis, duration: float) -> npt.NDArray[np.float
     return record
 
 
-def require_channels(n_observers: int) -> None:
-    """Refuse more observers than a sound file holds.
+def require_sound(n_observers: int, duration: float, full_scale: float | None = None) -> None:
+    """Refuse a sound file that cannot be, before what is heard in it is known.
 
     Parameters
     ----------
     n_observers : int
         Number of observers, a channel for each.
+    duration : float
+        Length of the sound [s].
+    full_scale : float, optional
+        Pressure of the largest number in the file [Pa].
 
     Raises
     ------
     ValueError
-        If there are more than `MAX_CHANNELS`.
+        If there are more than `MAX_CHANNELS`, or a value is out of range.
     """
     if n_observers > MAX_CHANNELS:
         raise ValueError(
             f"a sound file is of at most {MAX_CHANNELS} observers; there are {n_observers}"
         )
+    longest = MOST_SAMPLES / SAMPLE_RATE / max(n_observers, 1)
+    Range(_SHORTEST, math.floor(longest), "s").require(
+        f"length of the sound of {n_observers} observers", duration
+    )
+    if full_scale is not None:
+        FULL_SCALE.require("full scale", full_scale)
 
 
 def write_sound(
@@ -92,9 +106,13 @@ def write_sound(
     Raises
     ------
     ValueError
-        If there are more than `MAX_CHANNELS` observers, or as in `pressure_record` and `write_wav`.
+        If there are more than `MAX_CHANNELS` observers, a value is out of range, or as in
+        `pressure_record` and `write_wav`.
     """
-    require_channels(len(analysis.listening.observers))
+    # A record holds one blade passage at least, which may be long; a rotor at rest has none.
+    passage_hz = float(np.asarray(analysis.tones.frequency_hz)[0])
+    longer = max(duration, 1.0 / passage_hz if passage_hz > 0.0 else 0.0)
+    require_sound(len(analysis.listening.observers), longer, full_scale)
     record = pressure_record(analysis, duration)
     if full_scale is None:
         full_scale = common_full_scale(record)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import io
 import itertools
+import math
 import os
 import warnings
 from collections.abc import Iterable, Iterator, Mapping, Sequence
@@ -21,11 +22,25 @@ from propmdao.propeller.description import Propeller
 from propmdao.propeller.identity import checksum
 from propmdao.records.models import Model
 from propmdao.records.plain import to_plain
-from propmdao.records.quantities import BROADBAND_LEVELS, LEVELS, RESULTS, VARIABLES
+from propmdao.records.quantities import (
+    BROADBAND_LEVELS,
+    LEVELS,
+    RESULTS,
+    VARIABLES,
+    Range,
+    require_asked,
+)
 from propmdao.runtime.input_files import read_text
+from propmdao.runtime.locks import locked
+from propmdao.runtime.output_files import make_folder, require_writable
 from propmdao.runtime.worker_processes import results_in_order, start_workers
 
 Point = dict[str, float]
+#: Points of a sweep: those of a day, with a table that fits memory.
+MOST_POINTS = 100_000
+_N_POINTS = Range(1, MOST_POINTS)
+_SEED = Range(0, 2**128)
+_N_WORKERS = Range(1, 256)
 
 
 _RESULTS = [name for name in ("rpm", *RESULTS) if name != "failure"]
@@ -44,7 +59,13 @@ def grid(values: Mapping[str, Sequence[float]]) -> list[Point]:
     -------
     list of dict
         Points.
+
+    Raises
+    ------
+    ValueError
+        If there are more combinations than `MOST_POINTS`.
     """
+    _N_POINTS.require("number of points", math.prod(map(len, values.values())))
     return [dict(zip(values, point, strict=True)) for point in itertools.product(*values.values())]
 
 
@@ -66,7 +87,14 @@ def latin_hypercube(
     -------
     list of dict
         Points.
+
+    Raises
+    ------
+    ValueError
+        If there are more points than `MOST_POINTS`, or the seed is negative.
     """
+    _N_POINTS.require("number of points", n_points)
+    _SEED.require("seed", seed)
     sample = qmc.LatinHypercube(len(ranges), rng=seed).random(n_points)
     lower, upper = zip(*ranges.values(), strict=True)
     scaled = [
@@ -155,27 +183,35 @@ def sweep(
     Raises
     ------
     ValueError
-        When the points do not say what turns the propeller, or the file is of another sweep.
+        When the points do not say what turns the propeller, a value of theirs is out of range, or
+        the file is of another sweep, cannot be written or is in use by another one.
     WorkerLostError
         When a worker dies; the rows so far are in the table.
     """
     csv_file, parquet_file = table_files(path)
+    _N_WORKERS.require("number of workers", n_workers)
+    points = list(points)
+    _N_POINTS.require("number of points", len(points))
     # Whatever is wrong with what all points share is said before the first of them.
     request = Request.of(rpm=0.0, **asked)
     same = _same_columns(request)
     complete = [_complete(propeller, point) | same for point in points]
     drives = {"rpm" if "rpm" in point else "thrust_required" for point in complete}
     if len(drives) != 1:
-        raise ValueError("a sweep needs points, and in all of them rpm or in all thrust_required")
+        raise ValueError("a sweep needs in all points rpm or in all thrust_required")
     point_columns = list(complete[0])
     suffixes = _suffixes(request.listening.observers)
     levels = [*LEVELS, *(BROADBAND_LEVELS if same["broadband"] else ())]
     results = [name for name in _RESULTS if name not in point_columns]
     results += [name + suffix for suffix in suffixes for name in levels] + [_WARNINGS]
-    table = ResultTable(csv_file, point_columns, results)
-    new = [complete[place] for place in table.missing(complete)]
     analysed = partial(_analysed, propeller, asked, suffixes)
+    make_folder(csv_file.parent)
     with ExitStack() as stack:
+        stack.enter_context(locked(csv_file))
+        table = ResultTable(csv_file, point_columns, results)
+        if parquet_file is not None:
+            require_writable(parquet_file)
+        new = [complete[place] for place in table.missing(complete)]
         rows: Iterator[tuple[dict[str, Any], str]] = map(analysed, new)
         if n_workers > 1:
             workers = stack.enter_context(start_workers(n_workers))
@@ -183,8 +219,8 @@ def sweep(
         for point in tqdm(new, desc="sweep", unit="point", disable=None):
             values, reason = next(rows)
             table.add(point, {name: values[name] for name in results if name in values}, reason)
-    if parquet_file is not None:
-        table.write_parquet(parquet_file)
+        if parquet_file is not None:
+            table.write_parquet(parquet_file)
     return len(new), table.failures(complete)
 
 
@@ -232,6 +268,8 @@ def _complete(propeller: Propeller, point: Mapping[str, float]) -> dict[str, Any
             )
     if ("rpm" in point) == ("thrust_required" in point):
         raise ValueError(f"every point needs either rpm or thrust_required; one has {dict(point)}")
+    for name, value in point.items():
+        require_asked(VARIABLES[name].name, value)
     blades = point.get("n_blades", propeller.n_blades)
     if blades != int(blades):
         raise ValueError(f"n_blades must be a whole number; it is {blades:g}")

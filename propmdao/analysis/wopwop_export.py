@@ -44,10 +44,7 @@ def write_blade(
     surface = propeller_surface(propeller, fidelity.n_contour, fidelity.n_surface_span)
     geometry = blade_geometry(surface, None)
     geometry = dataclasses.replace(geometry, comment=f"propmdao {propeller.name}")
-    try:
-        write_geometry(path, geometry)
-    except OSError as error:
-        raise ValueError(f"{path}: {error.strerror or error}") from None
+    write_geometry(path, geometry)
 
 
 def write_case(analysis: Analysis, folder: str | Path, n_times: int = 1024) -> None:

@@ -22,7 +22,7 @@ from propmdao.commands.options import (
     asked_of,
     number,
 )
-from propmdao.commands.output_files import require_figures, require_writable, save_figures
+from propmdao.commands.output_files import require_figures, require_output, save_figures
 from propmdao.commands.warning_lines import warning_lines
 from propmdao.formats.endings import POLAR_READERS, described
 from propmdao.records.quantities import ASKED
@@ -131,7 +131,7 @@ def add_analyze(commands: argparse._SubParsersAction[Any]) -> None:
 def _analyze(options: argparse.Namespace) -> None:
     _check(options)
     listening = listening_of(options)
-    _check_observers(options, len(listening.observers))
+    _check_sound(options, len(listening.observers))
     asked = asked_of(options) | air_of(options) | {"listening": listening}
     points = [asked | {"rpm": rpm} for rpm in _rpm_values(options.rpm)]
     # Slow to import, so only once the arguments are known to be good.
@@ -192,17 +192,17 @@ def _check(options: argparse.Namespace) -> None:
     if options.full_scale is not None and options.wav is None:
         raise ValueError("--full-scale is of a sound file: add --wav FILE.wav")
     if options.wav is not None:
-        require_writable("--wav", options.wav, ".wav")
+        require_output("--wav", options.wav, ".wav")
     if options.figures is not None:
-        require_figures("--figures")
+        require_figures("--figures", options.figures)
 
 
-def _check_observers(options: argparse.Namespace, n_observers: int) -> None:
-    """Refuse more observers than a sound file holds, before the work."""
+def _check_sound(options: argparse.Namespace, n_observers: int) -> None:
+    """Refuse sound that no file holds, before the work."""
     if options.wav is not None:
-        from propmdao.analysis.sounds import require_channels
+        from propmdao.analysis.sounds import require_sound
 
-        require_channels(n_observers)
+        require_sound(n_observers, options.seconds, options.full_scale)
 
 
 def _write(options: argparse.Namespace, analysis: Analysis) -> dict[str, Any]:

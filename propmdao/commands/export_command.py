@@ -14,6 +14,7 @@ from propmdao.commands.options import (
     asked_of,
     number,
 )
+from propmdao.commands.output_files import require_output, require_output_folder
 from propmdao.commands.warning_lines import warning_lines
 from propmdao.formats.endings import PROPELLER_WRITERS, STL_UNITS
 
@@ -80,10 +81,6 @@ def _export(options: argparse.Namespace) -> None:
             f"--to {path}: there is no export to {ending!r}; a file ends in"
             f" {', '.join(PROPELLER_WRITERS)}, a PSU-WOPWOP case (--rpm, --thrust) in no such"
         )
-    if not path.absolute().parent.is_dir():
-        raise ValueError(f"--to {path}: there is no folder {path.parent}")
-    if path.is_dir() and writer is not None:
-        raise ValueError(f"--to {path}: it is a folder")
     if (options.section is not None) != (writer is not None and writer.of_section):
         sections = " or ".join(e for e, form in PROPELLER_WRITERS.items() if form.of_section)
         raise ValueError(
@@ -95,6 +92,10 @@ def _export(options: argparse.Namespace) -> None:
         raise ValueError(f"a {ending} file holds no loads: --rpm and --thrust do not go along")
     if writer is None and not driven:
         raise ValueError("a PSU-WOPWOP case holds loads: it needs --rpm or --thrust")
+    if ending:
+        require_output("--to", path)
+    else:
+        require_output_folder("--to", path)
     # Slow to import, so only once the arguments are known to be good.
     from propmdao.formats.propellers import load_propeller
     from propmdao.propeller.changes import Change
@@ -107,10 +108,7 @@ def _export(options: argparse.Namespace) -> None:
     propeller = Change(options.twist_offset_deg).applied_to(propeller)
     unit = options.units or "m"
     third = [options.section] if writer.of_section else [unit] if writer.in_units else []
-    try:
-        n_items = writer(path, propeller, *third)
-    except OSError as error:
-        raise ValueError(f"--to {path}: {error.strerror or error}") from None
+    n_items = writer(path, propeller, *third)
     lengths = f", {STL_UNITS[unit][0]}" if writer.in_units else ""
     print(f"{path}: {propeller.name}, {n_items} {writer.items}{lengths}")
 

@@ -17,8 +17,9 @@ from propmdao.commands.options import (
     asked_of,
     number,
 )
-from propmdao.commands.output_files import require_figures, require_writable, save_figures
+from propmdao.commands.output_files import require_figures, require_output, save_figures
 from propmdao.commands.warning_lines import warning_lines
+from propmdao.runtime.output_files import replacing
 
 if TYPE_CHECKING:
     from propmdao.analysis.flyover_results import Flyover
@@ -111,9 +112,9 @@ def _flyover(options: argparse.Namespace) -> None:
         raise ValueError("--full-scale is of a sound file: add --wav FILE.wav")
     for option, path, ending in (("--out", options.out, ".csv"), ("--wav", options.wav, ".wav")):
         if path is not None:
-            require_writable(option, path, ending)
+            require_output(option, path, ending)
     if options.figures is not None:
-        require_figures("--figures")
+        require_figures("--figures", options.figures)
     if not options.speed > 0.0:
         raise ValueError(f"--speed of a flyover must be positive [m/s]; it is {options.speed:g}")
     air = air_of(options)
@@ -121,6 +122,7 @@ def _flyover(options: argparse.Namespace) -> None:
     # Slow to import, so only once the arguments are known to be good.
     from propmdao.analysis.flyover_results import Flight
     from propmdao.analysis.request import Request
+    from propmdao.analysis.sounds import require_sound
     from propmdao.formats.propellers import load_propeller
 
     flight = Flight(
@@ -130,6 +132,9 @@ def _flyover(options: argparse.Namespace) -> None:
         options.duration,
         not options.no_absorption,
     )
+    duration = flight.heard_for(options.speed)
+    if options.wav is not None:
+        require_sound(1, duration, options.full_scale)
     Request.of(**asked)
     from propmdao.analysis.flyovers import fly_over
     from propmdao.analysis.single_point import analyze
@@ -157,13 +162,13 @@ def _write(options: argparse.Namespace, flyover: Flyover, nearest: float) -> dic
     written: dict[str, Any] = {}
     if options.out is not None:
         rows = flyover.to_dict()["history"]
-        try:
-            with options.out.open("w", newline="", encoding="utf-8") as stream:
-                writer = csv.DictWriter(stream, rows[0])
-                writer.writeheader()
-                writer.writerows({key: f"{x:.4f}" for key, x in row.items()} for row in rows)
-        except OSError as error:
-            raise ValueError(f"--out {options.out}: {error.strerror or error}") from None
+        with (
+            replacing(options.out) as file,
+            file.open("w", newline="", encoding="utf-8") as stream,
+        ):
+            writer = csv.DictWriter(stream, rows[0])
+            writer.writeheader()
+            writer.writerows({key: f"{x:.4f}" for key, x in row.items()} for row in rows)
     if flyover.pressure is not None:
         from propmdao.acoustics.sounds.recordings import common_full_scale
         from propmdao.formats.wav import write_wav

@@ -12,8 +12,6 @@ from propmdao.commands.options import number, number_or_range
 if TYPE_CHECKING:
     from propmdao.records.listening import Listening
 
-MAX_OBSERVERS = 20_000
-
 
 def add_observers(command: argparse.ArgumentParser) -> None:
     """Add the options that place observers; `listening_of` reads them.
@@ -135,7 +133,13 @@ def listening_of(options: argparse.Namespace) -> Listening:
     import numpy as np
 
     from propmdao.acoustics.kinematics.observers import circle, grid, hemisphere, point
-    from propmdao.records.listening import Listening, ObserverGroup, Surroundings
+    from propmdao.records.listening import (
+        MOST_OBSERVERS,
+        Listening,
+        ObserverGroup,
+        Surroundings,
+        require_number_of_observers,
+    )
 
     surroundings = Surroundings(
         getattr(options, "ground", None),
@@ -149,9 +153,7 @@ def listening_of(options: argparse.Namespace) -> Listening:
         same = sum(group.kind == kind for group in groups)
         groups.append(ObserverGroup(f"{kind} {same + 1}" if same else kind, kind, len(placed)))
         positions.append(placed)
-        n_observers = sum(group.n for group in groups)
-        if n_observers > MAX_OBSERVERS:
-            raise ValueError(f"{n_observers} observers are more than the {MAX_OBSERVERS} allowed")
+        require_number_of_observers(sum(group.n for group in groups))
 
     for values in options.arc:
         (radius, *others), *elevations = map(_values, values)
@@ -162,21 +164,19 @@ def listening_of(options: argparse.Namespace) -> Listening:
             )
         add("arc", point(radius, [elevation for some in elevations for elevation in some]))
     for place in options.point:
-        every = itertools.product(*map(_values, place))
-        add("point", point(*np.transpose(list(every))))
+        values = [_values(value) for value in place]
+        require_number_of_observers(math.prod(map(len, values)))
+        add("point", point(*np.transpose(list(itertools.product(*values)))))
     for radius, elevation, n in options.circle:
-        if n != int(n) or not 1 <= n <= MAX_OBSERVERS:
-            raise ValueError(f"--circle needs a whole number N of observers; it is {n:g}")
+        if n != int(n) or not 1 <= n <= MOST_OBSERVERS:
+            raise ValueError(
+                f"--circle needs a whole number N of observers, 1 ... {MOST_OBSERVERS}; it is {n:g}"
+            )
         add("circle", circle(radius, int(n), elevation))
     # What is named by the ground is turned into the rotor's axes.
     for coordinates in options.grid:
-        n = math.prod(len(_values(q)) for q in coordinates)
-        if n > MAX_OBSERVERS:
-            raise ValueError(f"--grid has {n} observers, at most {MAX_OBSERVERS} are allowed")
         add("grid", surroundings.from_ground_axes(grid(*coordinates)))
     for radius, step in options.hemisphere:
-        if 0.0 < step < 1.0:
-            raise ValueError(f"--hemisphere needs a STEP of 1 deg or more; it is {step:g}")
         add("hemisphere", surroundings.from_ground_axes(hemisphere(radius, step)))
     observers = np.concatenate([np.zeros((0, 3)), *positions])
     return Listening(observers, surroundings, tuple(groups))

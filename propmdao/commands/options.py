@@ -11,7 +11,7 @@ from typing import Any
 from propmdao.formats.endings import PROPELLER_READERS, described
 from propmdao.records.quantities import ASKED
 
-MAX_RPM_VALUES = 1000
+MOST_VALUES = 1000
 
 
 def add_command(
@@ -111,12 +111,12 @@ def number_or_range(text: str) -> float | list[float]:
             f"{text!r}: STEP of a range must be positive and STOP not below START"
         )
     # A step that fits the range up to rounding ends on STOP.
-    n_steps = math.floor((stop - start) / step * (1.0 + 1e-12))
-    if n_steps >= MAX_RPM_VALUES:
+    n_steps = (stop - start) / step * (1.0 + 1e-12)  # which may be infinite
+    if n_steps >= MOST_VALUES:
         raise argparse.ArgumentTypeError(
-            f"{text!r} has {n_steps + 1} values, at most {MAX_RPM_VALUES} are allowed"
+            f"{text!r} has more than the {MOST_VALUES} values that are allowed"
         )
-    return [start + i * step for i in range(n_steps + 1)]
+    return [start + i * step for i in range(math.floor(n_steps) + 1)]
 
 
 def take_negative_ranges(command: argparse.ArgumentParser) -> None:

@@ -2,53 +2,83 @@
 
 from __future__ import annotations
 
+import contextlib
 import importlib.util
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING
+
+from propmdao.runtime.output_files import (
+    OutputError,
+    replacing_in,
+    require_folder,
+    require_writable,
+)
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 
-def require_writable(option: str, path: Path, ending: str) -> None:
+def require_output(option: str, path: Path, ending: str = "") -> None:
     """Refuse a file that cannot be written.
 
     Parameters
     ----------
     option : str
-        Which names it.
+        Option that names the file.
     path : Path
         The file.
     ending : str
-        That it needs.
+        Ending that the file needs; any by default.
 
     Raises
     ------
     ValueError
-        If it ends otherwise or there is no such folder.
+        If it ends otherwise or cannot be written.
     """
-    if path.suffix.lower() != ending:
+    if ending and path.suffix.lower() != ending:
         raise ValueError(f"{option} {path}: the file must end in {ending}")
-    if not path.absolute().parent.is_dir():
-        raise ValueError(f"{option} {path}: there is no folder {path.parent}")
+    with _naming(option):
+        require_writable(path)
 
 
-def require_figures(option: str) -> None:
-    """Refuse figures where matplotlib, an extra, is not installed.
+def require_output_folder(option: str, folder: Path) -> None:
+    """Refuse a folder that cannot be made or written to.
 
     Parameters
     ----------
     option : str
-        Which asks for figures.
+        Option that names the folder.
+    folder : Path
+        The folder.
 
     Raises
     ------
     ValueError
-        If it is not.
+        If it cannot.
+    """
+    with _naming(option):
+        require_folder(folder)
+
+
+def require_figures(option: str, folder: Path) -> None:
+    """Refuse figures that cannot be written, or where matplotlib, an extra, is not installed.
+
+    Parameters
+    ----------
+    option : str
+        Option that asks for figures.
+    folder : Path
+        Folder of the figures.
+
+    Raises
+    ------
+    ValueError
+        If they cannot be drawn or written.
     """
     if importlib.util.find_spec("matplotlib") is None:
         raise ValueError(f"{option} needs matplotlib: pip install 'propmdao[plots]'")
+    require_output_folder(option, folder)
 
 
 def save_figures(folder: Path, figures: Mapping[str, Figure]) -> list[str]:
@@ -57,9 +87,9 @@ def save_figures(folder: Path, figures: Mapping[str, Figure]) -> list[str]:
     Parameters
     ----------
     folder : Path
-        Made where there is none.
+        Folder of the files, made where there is none.
     figures : mapping of str to Figure
-        By the name of the file.
+        Figures by the name of the file.
 
     Returns
     -------
@@ -68,14 +98,19 @@ def save_figures(folder: Path, figures: Mapping[str, Figure]) -> list[str]:
 
     Raises
     ------
-    ValueError
+    OutputError
         If the folder cannot be written.
     """
-    files = [folder / f"{name}.png" for name in figures]
+    with replacing_in(folder) as files:
+        for name, figure in figures.items():
+            figure.savefig(files / f"{name}.png")
+    return [str(folder / f"{name}.png") for name in figures]
+
+
+@contextlib.contextmanager
+def _naming(option: str) -> Iterator[None]:
+    """Put an option in front of what is wrong with its file."""
     try:
-        folder.mkdir(parents=True, exist_ok=True)
-        for file, figure in zip(files, figures.values(), strict=True):
-            figure.savefig(file)
-    except OSError as error:
-        raise ValueError(f"{folder}: {error.strerror or error}") from None
-    return [str(file) for file in files]
+        yield
+    except OutputError as error:
+        raise ValueError(f"{option} {error}") from None

@@ -11,7 +11,7 @@ import contextlib
 import os
 import sys
 from collections.abc import Sequence
-from typing import NoReturn
+from typing import Any, NoReturn
 
 import propmdao
 from propmdao.commands.analyze_command import add_analyze
@@ -20,6 +20,7 @@ from propmdao.commands.flyover_command import add_flyover
 from propmdao.commands.json_output import print_json
 from propmdao.commands.sweep_command import add_sweep
 from propmdao.commands.wopwop_command import add_wopwop
+from propmdao.runtime.output_files import reason_of
 
 
 class _Parser(argparse.ArgumentParser):
@@ -27,6 +28,13 @@ class _Parser(argparse.ArgumentParser):
 
     def error(self, message: str) -> NoReturn:
         self.exit(2, f"{self.prog}: error: {message}\n")
+
+    def _print_message(self, message: str, file: Any = None) -> None:
+        """Print help; argparse itself says nothing when it cannot be written."""
+        if file is sys.stdout:
+            file.write(message)
+        else:
+            super()._print_message(message, file)
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -40,25 +48,44 @@ def main(arguments: Sequence[str] | None = None) -> int:
     Returns
     -------
     int
-        Exit status: 0, or 2 after one line on stderr about bad input; 130 when interrupted, 1 when
-        nobody reads the output any more.
+        Exit status: 0, or 2 after one line on stderr about bad input or output that cannot be
+        written; 130 when interrupted, 1 when nobody reads the output any more.
     """
     parser = build_parser()
-    options = parser.parse_args(arguments)
+    name = parser.prog
+    if sys.stdout is None:  # closed by who started the program
+        return _refuse(name, "standard output is closed")
     try:
-        options.command(options)
-        sys.stdout.flush()
+        try:
+            options = parser.parse_args(arguments)
+            name = f"{parser.prog} {options.name}"
+            options.command(options)
+        finally:  # here, where its errors are caught: also after --help
+            sys.stdout.flush()
     except ValueError as error:
-        print(f"{parser.prog} {options.name}: error: {error}", file=sys.stderr)
-        return 2
+        return _refuse(name, str(error))
     except KeyboardInterrupt:
         return 130
     except BrokenPipeError:
-        # Python flushes stdout once more on exit, which would complain.
-        with open(os.devnull, "w") as nowhere, contextlib.suppress(ValueError, OSError):
-            os.dup2(nowhere.fileno(), sys.stdout.fileno())
+        _drop_output()
         return 1
+    except OSError as error:
+        _drop_output()
+        place = "output" if error.filename is None else f"{error.filename}:"
+        return _refuse(name, f"{place} cannot be written: {reason_of(error)}")
     return 0
+
+
+def _refuse(name: str, reason: str) -> int:
+    """Say in one line on stderr what is wrong; the exit status."""
+    print(f"{name}: error: {reason}", file=sys.stderr)
+    return 2
+
+
+def _drop_output() -> None:
+    """Send what is still to be printed nowhere: Python tries once more on exit, and complains."""
+    with open(os.devnull, "w") as nowhere, contextlib.suppress(ValueError, OSError):
+        os.dup2(nowhere.fileno(), sys.stdout.fileno())
 
 
 def build_parser() -> argparse.ArgumentParser:

@@ -20,7 +20,7 @@ from propmdao.commands.options import (
     number_or_range,
 )
 from propmdao.commands.warning_lines import warning_lines
-from propmdao.records.quantities import VARIABLES
+from propmdao.records.quantities import VARIABLES, Range
 
 SWEEP_DESCRIPTION = """\
 A propeller at many points into a table, a row per point: a map of thrust, torque and noise over
@@ -46,7 +46,6 @@ diameter, n_blades. SI units, angles in degrees. Exit status: 0, or 2 with one l
 when every point has failed.
 """
 
-MAX_POINTS = 100_000
 #: What is asked of all points alike.
 ASKED_OF_ALL = ("viscous", "stall_delay", "broadband", "trip")
 
@@ -103,8 +102,6 @@ def add_sweep(commands: argparse._SubParsersAction[Any]) -> None:
 
 def _sweep(options: argparse.Namespace) -> None:
     listening = listening_of(options)
-    if options.workers < 1:
-        raise ValueError(f"--workers must be 1 or more; it is {options.workers}")
     asked = {name: getattr(options, name) for name in ASKED_OF_ALL} | air_of(options)
     # Slow to import, so only once the arguments are known to be good.
     from propmdao.analysis.sweeps import sweep
@@ -135,14 +132,13 @@ def _sweep(options: argparse.Namespace) -> None:
 
 
 def _points(options: argparse.Namespace) -> list[dict[str, float]]:
-    from propmdao.analysis.sweeps import grid, latin_hypercube, read_points
+    from propmdao.analysis.sweeps import MOST_POINTS, grid, latin_hypercube, read_points
 
     typed = {variable: getattr(options, variable) for variable in VARIABLES}
     typed = {variable: texts for variable, texts in typed.items() if texts}
     drawn: list[dict[str, float]] = [{}]
     if options.samples is not None:
-        if options.samples < 1:
-            raise ValueError(f"--samples must be 1 or more; it is {options.samples}")
+        Range(1, MOST_POINTS).require("--samples", options.samples)
         ranges = {
             variable: _low_high(variable, typed.pop(variable), number)
             for variable, texts in list(typed.items())
@@ -159,8 +155,8 @@ def _points(options: argparse.Namespace) -> list[dict[str, float]]:
     n_points = len(drawn) * len(listed)
     for numbers in values.values():
         n_points *= len(numbers)
-    if n_points > MAX_POINTS:
-        raise ValueError(f"{n_points} points are more than the {MAX_POINTS} that are allowed")
+    if n_points > MOST_POINTS:
+        raise ValueError(f"{n_points} points are more than the {MOST_POINTS} that are allowed")
     return [{**a, **b, **c} for a in listed for b in drawn for c in grid(values)]
 
 

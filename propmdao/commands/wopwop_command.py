@@ -10,7 +10,9 @@ from typing import TYPE_CHECKING, Any
 
 from propmdao.commands.json_output import print_json
 from propmdao.commands.options import add_command
+from propmdao.commands.output_files import require_output
 from propmdao.commands.warning_lines import warning_lines
+from propmdao.runtime.output_files import replacing
 
 if TYPE_CHECKING:
     from propmdao.analysis.foreign_case import CaseResult
@@ -122,8 +124,8 @@ def _group(result: CaseResult) -> dict[str, Any]:
 
 
 def _wopwop(options: argparse.Namespace) -> None:
-    if options.out is not None and not options.out.absolute().parent.is_dir():
-        raise ValueError(f"--out {options.out}: there is no folder {options.out.parent}")
+    if options.out is not None:
+        require_output("--out", options.out)
     # Slow to import, so only once it is wanted.
     from propmdao.analysis.foreign_case import run_case
 
@@ -153,23 +155,20 @@ def write_pressure_csv(path: Path, results: Sequence[CaseResult]) -> None:
     ValueError
         If the file cannot be written.
     """
-    try:
-        with path.open("w", newline="", encoding="utf-8") as stream:
-            out = csv.writer(stream)
-            out.writerow(
-                "case title observer time_s x_m y_m z_m thickness_pa loading_pa total_pa".split()
-            )
-            for result in results:
-                p = result.pressure
-                for i in range(len(p.time)):
-                    rows = zip(
-                        p.time[i], *p.position[i].T, p.thickness[i], p.loading[i], p.total[i],
-                        strict=True,
-                    )  # fmt: skip
-                    for row in rows:
-                        out.writerow([result.case, result.observers, i + 1, *map(float, row)])
-    except OSError as error:
-        raise ValueError(f"{path}: {error.strerror or error}") from None
+    with replacing(path) as file, file.open("w", newline="", encoding="utf-8") as stream:
+        out = csv.writer(stream)
+        out.writerow(
+            "case title observer time_s x_m y_m z_m thickness_pa loading_pa total_pa".split()
+        )
+        for result in results:
+            p = result.pressure
+            for i in range(len(p.time)):
+                rows = zip(
+                    p.time[i], *p.position[i].T, p.thickness[i], p.loading[i], p.total[i],
+                    strict=True,
+                )  # fmt: skip
+                for row in rows:
+                    out.writerow([result.case, result.observers, i + 1, *map(float, row)])
 
 
 def _print(groups: Sequence[dict[str, Any]]) -> None:

@@ -16,6 +16,7 @@ from propmdao.geometry.section import section_shape
 from propmdao.propeller.airfoils.airfoil import chord_interpolation
 from propmdao.propeller.description import Propeller
 from propmdao.records.fidelity import Fidelity
+from propmdao.runtime.output_files import replacing
 
 _SECTION_POINTS = 161
 
@@ -72,6 +73,11 @@ def export_csv(path: str | Path, propeller: Propeller) -> int:
     -------
     int
         Number of stations.
+
+    Raises
+    ------
+    OutputError
+        If the file cannot be written.
     """
     blade, radius = Blade.from_propeller(propeller), 0.5 * propeller.diameter
     columns = {
@@ -85,7 +91,7 @@ def export_csv(path: str | Path, propeller: Propeller) -> int:
         "sweep_over_R": propeller.sweep_over_R,
         "rake_over_R": propeller.rake_over_R,
     }
-    with Path(path).open("w", newline="", encoding="utf-8") as stream:
+    with replacing(path) as file, file.open("w", newline="", encoding="utf-8") as stream:
         writer = csv.writer(stream)
         writer.writerow(columns)
         # Ten digits: more than were measured, fewer than rounding shows.
@@ -114,7 +120,7 @@ def export_section(path: str | Path, propeller: Propeller, r_over_R: float) -> i
     Raises
     ------
     ValueError
-        If the radius is outside the blade.
+        If the radius is outside the blade, or the file cannot be written.
     """
     span = span_interpolation(propeller.r_over_R, [r_over_R])
     angle = np.linspace(np.pi, -np.pi, _SECTION_POINTS)
@@ -124,5 +130,6 @@ def export_section(path: str | Path, propeller: Propeller, r_over_R: float) -> i
     x = 0.5 * (1.0 - np.cos(angle))
     lines = [f"{propeller.name} at r/R {r_over_R:g}"]
     lines += [f"{a:.7f} {b:.7f}" for a, b in zip(x, z + 0.0, strict=True)]
-    Path(path).write_text("\n".join(lines) + "\n", encoding="utf-8")
+    with replacing(path) as file:
+        file.write_text("\n".join(lines) + "\n", encoding="utf-8")
     return _SECTION_POINTS

@@ -14,6 +14,7 @@ import numpy.typing as npt
 from propmdao.formats.toml_files import write_toml
 from propmdao.propeller.airfoils.airfoil import CHORD_FRACTION, naca4
 from propmdao.propeller.description import Propeller
+from propmdao.runtime.output_files import replacing
 
 CAMBER_POSITION = 0.4  # of the chord; the catalogue has polars for these
 
@@ -48,6 +49,11 @@ def with_naca_sections(
     -------
     Propeller
         The new propeller, as `propmdao analyze` reads it from its file.
+
+    Raises
+    ------
+    OutputError
+        If a file cannot be written.
     """
     folder = Path(folder)
     cambers, thicknesses = np.asarray(max_camber, float), np.asarray(thickness_over_chord, float)
@@ -58,7 +64,8 @@ def with_naca_sections(
         x = np.append(CHORD_FRACTION[::-1], CHORD_FRACTION[1:])
         z = np.append((section.camber + half)[::-1], (section.camber - half)[1:])
         file = folder / f"{name}_{100.0 * r:.0f}.dat"
-        np.savetxt(file, np.transpose([x, z]))
+        with replacing(file) as written:
+            np.savetxt(written, np.transpose([x, z]))
         airfoils.append((r, str(file)))
     new = dataclasses.replace(
         propeller,

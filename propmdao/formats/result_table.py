@@ -9,6 +9,9 @@ import os
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
+from propmdao.runtime.input_files import read_bytes
+from propmdao.runtime.output_files import append, make_folder, replacing, require_writable
+
 Value = float | int | str | bool
 STATUS, REASON = "status", "reason"
 
@@ -30,7 +33,7 @@ class ResultTable:
     Raises
     ------
     ValueError
-        If the file has other columns, or rows that do not fit the columns.
+        If the file cannot be written, has other columns, or rows that do not fit the columns.
     """
 
     def __init__(
@@ -43,11 +46,12 @@ class ResultTable:
         self._point_columns = list(point_columns)
         self._columns = [*point_columns, *result_columns, STATUS, REASON]
         self._rows: dict[tuple[str, ...], list[str]] = {}
-        self.path.parent.mkdir(parents=True, exist_ok=True)
+        make_folder(self.path.parent)
+        require_writable(self.path)
         if self.path.exists() and self.path.stat().st_size > 0:
             self._read()
         else:
-            self.path.write_text(_line(self._columns), encoding="utf-8")
+            append(self.path, _line(self._columns).encode())
 
     def __contains__(self, point: Mapping[str, Value]) -> bool:
         """True if the table has a row for the point."""
@@ -79,13 +83,16 @@ class ResultTable:
             Values of the result columns; one that is missing leaves its cell empty.
         reason : str
             Reason why the point has failed; empty for one that has not.
+
+        Raises
+        ------
+        OutputError
+            If the row cannot be written; those before it are kept.
         """
         row = {**point, **results}
         row |= {STATUS: "failed" if reason else "ok", REASON: " ".join(reason.split())}
         cells = [_text(row[name]) if name in row else "" for name in self._columns]
-        # One unbuffered write: the row is in the hands of the system when this returns.
-        with self.path.open("ab", buffering=0) as file:
-            file.write(_line(cells).encode())
+        append(self.path, _line(cells).encode())
         self._rows[self._key(point)] = cells
 
     def failures(self, points: Sequence[Mapping[str, Value]]) -> list[str]:
@@ -100,19 +107,25 @@ class ResultTable:
         ----------
         path : path
             File to write or replace.
+
+        Raises
+        ------
+        OutputError
+            If the file cannot be written.
         """
         # An extra, and without type information.
         pyarrow, parquet = map(importlib.import_module, ("pyarrow", "pyarrow.parquet"))
         columns = {}
         for name, *cells in zip(self._columns, *self._rows.values(), strict=True):
             columns[name] = cells if name in (STATUS, REASON) else _typed(cells)
-        parquet.write_table(pyarrow.table(columns), path)
+        with replacing(path) as file:
+            parquet.write_table(pyarrow.table(columns), file)
 
     def _key(self, point: Mapping[str, Value]) -> tuple[str, ...]:
         return tuple(_text(point[name]) for name in self._point_columns)
 
     def _read(self) -> None:
-        content = self.path.read_bytes()
+        content = read_bytes(self.path, ValueError)
         whole = content[: content.rfind(b"\n") + 1]
         try:
             header, *rows = csv.reader(io.StringIO(whole.decode()), strict=True)

@@ -9,6 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from propmdao.geometry.surface import surface_quads
+from propmdao.runtime.output_files import replacing
 
 Triangles = npt.NDArray[np.float32]
 
@@ -70,6 +71,11 @@ def write_stl(path: str | Path, triangles: Triangles, title: str) -> None:
         Corners, counter-clockwise seen from outside.
     title : str
         Title of the file, of which 80 bytes are kept.
+
+    Raises
+    ------
+    OutputError
+        If the file cannot be written.
     """
     first, second, third = np.moveaxis(np.asarray(triangles, float), 1, 0)
     normal = np.cross(second - first, third - first)
@@ -78,4 +84,5 @@ def write_stl(path: str | Path, triangles: Triangles, title: str) -> None:
     facets["corners"] = triangles
     header = title.encode("ascii", "replace")[:80].ljust(80)
     count = np.array(len(facets), "<u4")
-    Path(path).write_bytes(header + count.tobytes() + facets.tobytes())
+    with replacing(path) as file:
+        file.write_bytes(header + count.tobytes() + facets.tobytes())

@@ -14,6 +14,7 @@ import tomli_w
 from propmdao.propeller.checks import PropellerError
 from propmdao.propeller.description import DISTRIBUTIONS, Propeller
 from propmdao.runtime.input_files import read_text
+from propmdao.runtime.output_files import replacing
 
 
 def read_toml(path: str | os.PathLike[str]) -> Propeller:
@@ -54,6 +55,11 @@ def write_toml(path: str | os.PathLike[str], propeller: Propeller) -> int:
     -------
     int
         Number of stations.
+
+    Raises
+    ------
+    OutputError
+        If the file cannot be written.
     """
     folder = Path(path).absolute().parent
     lines = [tomli_w.dumps({"name": propeller.name, "diameter": propeller.diameter}).rstrip()]
@@ -73,7 +79,8 @@ def write_toml(path: str | os.PathLike[str], propeller: Propeller) -> int:
         tables.append(f"{{ r_over_R = {position}, {entry} }}")
     lines.append(f"airfoils = [ {', '.join(tables)} ]")
     lines.append(tomli_w.dumps({"source": propeller.source}))
-    Path(path).write_text("\n".join(lines), encoding="utf-8")
+    with replacing(path) as file:
+        file.write_text("\n".join(lines), encoding="utf-8")
     return propeller.r_over_R.size
 
 

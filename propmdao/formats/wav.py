@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 from pathlib import Path
 from typing import NamedTuple
 
@@ -10,6 +11,11 @@ import soundfile  # type: ignore[import-untyped]
 from numpy.typing import ArrayLike
 
 from propmdao.acoustics.sounds.recordings import SAMPLE_RATE
+from propmdao.records.quantities import Range
+from propmdao.runtime.output_files import replacing
+
+#: Pressure of the largest number in a file.
+FULL_SCALE = Range(1e-9, 1e9, "Pa")
 
 
 class Recording(NamedTuple):
@@ -64,13 +70,13 @@ def write_wav(
     Raises
     ------
     ValueError
-        If the pressure is not finite or would be clipped, or the number of bits is another one.
+        If the pressure is not finite or would be clipped, the full scale is out of range, or the
+        number of bits is another one, or the file cannot be written.
     """
     p = np.asarray(pressure, float)
     if bits not in _CODING:
         raise ValueError(f"bits of a sound file must be 24 or 32; got {bits}")
-    if not (np.isfinite(full_scale) and full_scale > 0):
-        raise ValueError(f"full scale must be positive and finite [Pa]; got {full_scale:g}")
+    FULL_SCALE.require("full scale", full_scale)
     if p.ndim not in (1, 2) or p.size == 0:
         raise ValueError(f"a sound file holds (n_channels, n_times) pressures; got {p.shape}")
     if not np.all(np.isfinite(p)):
@@ -80,11 +86,15 @@ def write_wav(
         raise ValueError(
             f"pressure would be clipped: its peak is {peak:.4g} Pa, full scale {full_scale:.4g} Pa"
         )
+    # In memory first: the library does not say why a file could not be written.
+    content = io.BytesIO()
     with soundfile.SoundFile(
-        path, "w", sample_rate, np.atleast_2d(p).shape[0], _CODING[bits], format="WAV"
-    ) as file:
-        file.comment = f"full scale = {full_scale:.9g} Pa"
-        file.write(p.T / full_scale)
+        content, "w", sample_rate, np.atleast_2d(p).shape[0], _CODING[bits], format="WAV"
+    ) as sound:
+        sound.comment = f"full scale = {full_scale:.9g} Pa"
+        sound.write(p.T / full_scale)
+    with replacing(path) as file:
+        file.write_bytes(content.getbuffer())
     return Recording(Path(path), full_scale, peak, p.shape[-1] / sample_rate)
 
 

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import dataclasses
 
-from propmdao.propeller import checks
+from propmdao.propeller.checks import PropellerError
 from propmdao.propeller.description import Propeller
+from propmdao.records.quantities import require_asked
 
 
 @dataclasses.dataclass(frozen=True)
@@ -25,8 +26,8 @@ class Change:
 
     Raises
     ------
-    ValueError
-        If the offset or the factor is not finite.
+    PropellerError
+        If a value is out of range.
     """
 
     twist_offset_deg: float = 0.0
@@ -35,9 +36,11 @@ class Change:
     n_blades: int | None = None
 
     def __post_init__(self) -> None:
-        """Refuse changes of all stations that are no numbers: the stations are not to blame."""
-        for name in ("twist_offset_deg", "chord_factor"):
-            checks.number(name, getattr(self, name))
+        """Refuse changes that are out of range whatever the propeller."""
+        for field in dataclasses.fields(self):
+            value = getattr(self, field.name)
+            if value is not None:
+                require_asked(field.name, value, PropellerError)
 
     def applied_to(self, propeller: Propeller) -> Propeller:
         """Change a propeller.

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import reprlib
 from collections.abc import Iterable
 from typing import Any
 
@@ -10,8 +11,21 @@ import numpy.typing as npt
 
 from propmdao.propeller.airfoils.airfoil import AirfoilError
 from propmdao.propeller.airfoils.library import find_airfoil
+from propmdao.records.quantities import Range
 
 FloatArray = npt.NDArray[np.float64]
+
+
+#: Stations of a blade; more than a scan needs are a mistake and take memory.
+MOST_STATIONS = 1000
+#: Radius of the first station over the tip radius: there is a hub, however small.
+_RADIUS = Range(1e-4, 1.0)
+#: Chord over tip radius.
+CHORD = Range(1e-6, 10.0)
+#: Sweep and rake over tip radius.
+OFFSET = Range(-10.0, 10.0)
+#: Maximum thickness over chord.
+THICKNESS = Range(1e-4, 0.999)
 
 
 class PropellerError(ValueError):
@@ -40,10 +54,10 @@ def number(key: str, value: Any) -> float:
     """
     try:
         result = float(value)
-    except (TypeError, ValueError):
-        raise PropellerError(f"{key} must be a number; it is {value!r}") from None
+    except (TypeError, ValueError, OverflowError):  # the last by hundreds of digits
+        raise PropellerError(f"{key} must be a number; it is {reprlib.repr(value)}") from None
     if isinstance(value, (str, bool)) or not np.isfinite(result):
-        raise PropellerError(f"{key} must be a finite number; it is {value!r}")
+        raise PropellerError(f"{key} must be a finite number; it is {reprlib.repr(value)}")
     return result
 
 
@@ -75,7 +89,7 @@ def distribution(key: str, values: Any, r: FloatArray | None = None) -> FloatArr
     except ValueError:  # lists of unequal length inside the list
         valid = False
     if not valid:
-        raise PropellerError(f"{key} must be a list of numbers; it is {values!r}")
+        raise PropellerError(f"{key} must be a list of numbers; it is {reprlib.repr(values)}")
     array = array.astype(float)
     if r is not None and array.size != r.size:
         raise PropellerError(f"{key} has {array.size} values for {r.size} stations of r_over_R")
@@ -107,12 +121,37 @@ def require(
     Raises
     ------
     PropellerError
-        ``c_over_R must be positive; station 3 (r/R 0.25) has -0.02``; stations count from 1.
+        ``key must rule; station 3 (r/R 0.25) has -0.02``; stations count from 1.
     """
     if not holds.all():
         i = int(np.argmin(holds))
         where = "" if r is None else f" (r/R {r[i]:.10g})"
         raise PropellerError(f"{key} must {rule}; station {i + 1}{where} has {values[i]:.10g}")
+
+
+def require_within(
+    key: str, allowed: Range, values: FloatArray, r: FloatArray | None = None
+) -> None:
+    """Raise for the first station whose value is outside a range.
+
+    Parameters
+    ----------
+    key : str
+        Name of the distribution.
+    allowed : Range
+        Values that are allowed.
+    values : (n_stations,) array
+        Values of the distribution.
+    r : (n_stations,) array, optional
+        Stations, named in the message.
+
+    Raises
+    ------
+    PropellerError
+        If there is one; the message is that of `require`.
+    """
+    holds = (allowed.lowest <= values) & (values <= allowed.highest)
+    require(key, f"be {allowed}", holds, values, r)
 
 
 def stations(values: Any) -> FloatArray:
@@ -136,9 +175,11 @@ def stations(values: Any) -> FloatArray:
         extrapolated.
     """
     r = distribution("r_over_R", values)
-    if r.size < 2:
-        raise PropellerError(f"r_over_R must hold at least 2 stations; it holds {r.size}")
-    require("r_over_R", "be above 0 and at most 1", (r > 0.0) & (r <= 1.0), r)
+    if not 2 <= r.size <= MOST_STATIONS:
+        raise PropellerError(
+            f"r_over_R must hold 2 ... {MOST_STATIONS} stations; it holds {r.size}"
+        )
+    require_within("r_over_R", _RADIUS, r)
     require("r_over_R", "rise from station to station", np.append(True, np.diff(r) > 0.0), r)
     if r[-1] != 1.0:
         raise PropellerError(f"r_over_R must end at the tip, 1; the last station has {r[-1]:.10g}")

@@ -12,6 +12,7 @@ import numpy.typing as npt
 from propmdao.propeller import checks
 from propmdao.propeller.airfoils.library import find_airfoil
 from propmdao.propeller.checks import PropellerError
+from propmdao.records.quantities import require_asked
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -41,7 +42,7 @@ class Propeller:
     diameter : float
         Diameter from tip to tip [m].
     n_blades : int
-        Number of blades, at least 1.
+        Number of blades.
     r_over_R : (n_stations,) array
         Radii of the stations over the tip radius, rising; the last is the tip, 1.
     c_over_R, beta_deg : (n_stations,) arrays
@@ -84,12 +85,10 @@ class Propeller:
                 raise PropellerError(f"{key} must be text; it is {getattr(self, key)!r}")
         # The attribute of a frozen dataclass can only be set this way.
         object.__setattr__(self, "diameter", checks.number("diameter", self.diameter))
-        if not self.diameter > 0.0:
-            raise PropellerError(f"diameter must be positive [m]; it is {self.diameter}")
+        require_asked("diameter", self.diameter, PropellerError)
         if not isinstance(self.n_blades, int | np.integer) or isinstance(self.n_blades, bool):
             raise PropellerError(f"n_blades must be a whole number; it is {self.n_blades!r}")
-        if self.n_blades < 1:
-            raise PropellerError(f"n_blades must be at least 1; it is {self.n_blades}")
+        require_asked("n_blades", self.n_blades, PropellerError)
 
         r = checks.stations(self.r_over_R)
         object.__setattr__(self, "r_over_R", r)
@@ -101,11 +100,12 @@ class Propeller:
                 value = _everywhere(key, value, r)
             object.__setattr__(self, key, checks.distribution(key, value, r))
         chord, beta, thickness = self.c_over_R, self.beta_deg, self.thickness_over_chord
-        checks.require("c_over_R", "be positive", chord > 0.0, chord, r)
+        checks.require_within("c_over_R", checks.CHORD, chord, r)
+        for key in ("sweep_over_R", "rake_over_R"):
+            checks.require_within(key, checks.OFFSET, getattr(self, key), r)
         checks.require("beta_deg", "be within -90..90", np.abs(beta) <= 90.0, beta, r)
         if thickness is not None:
-            holds = (thickness > 0.0) & (thickness < 1.0)
-            checks.require("thickness_over_chord", "be above 0 and below 1", holds, thickness, r)
+            checks.require_within("thickness_over_chord", checks.THICKNESS, thickness, r)
         object.__setattr__(self, "airfoils", checks.airfoil_pairs(self.airfoils))
 
     def __setstate__(self, state: dict[str, Any]) -> None:

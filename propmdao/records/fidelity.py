@@ -4,7 +4,11 @@ from __future__ import annotations
 
 import dataclasses
 
+from propmdao.records.quantities import Range
 from propmdao.records.wake_law import WakeGrid
+
+#: Panels of the lattice on a blade: the unknowns, whose matrix has 128 MiB.
+MOST_PANELS = 4096
 
 
 @dataclasses.dataclass(frozen=True)
@@ -24,6 +28,11 @@ class Fidelity:
         Harmonics of the blade passage frequency.
     wake : WakeGrid
         Nodes of the wake's filaments.
+
+    Raises
+    ------
+    ValueError
+        If a number is out of range.
     """
 
     n_chordwise: int = 8
@@ -34,14 +43,17 @@ class Fidelity:
     wake: WakeGrid = WakeGrid()
 
     def __post_init__(self) -> None:
-        """Refuse resolutions that no mesh can have."""
-        for field, least in (
-            ("n_chordwise", 2),
-            ("n_spanwise", 2),
-            ("n_contour", 5),
-            ("n_surface_span", 2),
-            ("n_harmonics", 1),
+        """Refuse resolutions that no mesh can have, or no memory hold."""
+        for field, allowed in (
+            ("n_chordwise", Range(2, 100)),
+            ("n_spanwise", Range(2, 400)),
+            ("n_contour", Range(5, 1001)),
+            ("n_surface_span", Range(2, 1001)),
+            ("n_harmonics", Range(1, 1000)),
         ):
-            value = getattr(self, field)
-            if value < least:
-                raise ValueError(f"{field} must be at least {least}; it is {value}")
+            allowed.require(field, getattr(self, field))
+        n_panels = self.n_chordwise * self.n_spanwise
+        if n_panels > MOST_PANELS:
+            raise ValueError(
+                f"n_chordwise times n_spanwise must be at most {MOST_PANELS}; it is {n_panels}"
+            )

@@ -8,7 +8,15 @@ from typing import Literal, get_args
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from propmdao.records.quantities import Range
+
 Floats = NDArray[np.float64]
+#: Distance of an observer from the rotor centre.
+DISTANCE = Range(0.001, 1e6, "m")
+#: Height above the ground.
+HEIGHT = Range(0.001, 1e6, "m")
+#: Observers of one analysis.
+MOST_OBSERVERS = 20_000
 #: What places a group of observers, by the words of the command line.
 GroupKind = Literal["arc", "point", "circle", "grid", "hemisphere"]
 
@@ -32,7 +40,7 @@ class Surroundings:
     Raises
     ------
     ValueError
-        If the height is not positive.
+        If the height is out of range.
     """
 
     ground: float | Literal["flush"] | None = None
@@ -40,9 +48,9 @@ class Surroundings:
     absorption: bool = False
 
     def __post_init__(self) -> None:
-        """Refuse a height that is not positive."""
-        if isinstance(self.ground, float | int) and not 0.0 < self.ground < np.inf:
-            raise ValueError(f"height above ground must be positive [m]; it is {self.ground:g}")
+        """Refuse a height that is out of range."""
+        if self.ground is not None and self.ground != "flush":
+            HEIGHT.require("height above ground", self.ground)
 
     def __str__(self) -> str:
         """Describe ground and air in one line."""
@@ -147,6 +155,23 @@ class Listening:
             )
 
 
+def require_number_of_observers(n_observers: int) -> None:
+    """Refuse more observers than memory is for, before they are placed.
+
+    Parameters
+    ----------
+    n_observers : int
+        Number of observers.
+
+    Raises
+    ------
+    ValueError
+        If there are more than `MOST_OBSERVERS`.
+    """
+    if n_observers > MOST_OBSERVERS:
+        raise ValueError(f"{n_observers} observers are more than the {MOST_OBSERVERS} allowed")
+
+
 def require_positions(observers: ArrayLike) -> Floats:
     """Refuse observers whose positions are not finite or not (n, 3).
 
@@ -163,8 +188,8 @@ def require_positions(observers: ArrayLike) -> Floats:
     Raises
     ------
     ValueError
-        If the positions have another shape or are not finite; the message names the functions
-        that make positions.
+        If there are more than `MOST_OBSERVERS`, or the positions have another shape or are not
+        finite or too far away; the message names the functions that make positions.
     """
     positions = np.asarray(observers, float)
     if positions.ndim != 2 or positions.shape[1] != 3:
@@ -173,7 +198,15 @@ def require_positions(observers: ArrayLike) -> Floats:
             f" shape {positions.shape}: propmdao.arc(radius, elevation_deg) makes them, and point,"
             " circle, hemisphere, grid"
         )
+    require_number_of_observers(len(positions))
     if not np.isfinite(positions).all():
         k = int(np.argmin(np.isfinite(positions).all(axis=1)))
         raise ValueError(f"observer {k + 1} must be at a finite position; it is {positions[k]}")
+    far = np.abs(positions).max(axis=1, initial=0.0) > DISTANCE.highest
+    if far.any():
+        k = int(np.argmax(far))
+        raise ValueError(
+            f"coordinates of observer {k + 1} must be at most {DISTANCE.highest:g} {DISTANCE.unit};"
+            f" they are {positions[k]}"
+        )
     return positions

@@ -6,12 +6,15 @@ import dataclasses
 from typing import Literal, get_args
 
 from propmdao.records.fidelity import Fidelity
+from propmdao.records.quantities import Range
 from propmdao.records.wake_law import WakeLaw
 
 #: How boundary layers are tripped, as NASA RP-1218 distinguishes them.
 Trip = Literal["none", "light", "heavy"]
 #: Planform of the blade's tip, as NASA RP-1218 distinguishes them.
 Tip = Literal["rounded", "square"]
+# Amplification of a wind tunnel full of turbulence and of the stillest air.
+_N_CRIT = Range(0.1, 30.0)
 
 
 @dataclasses.dataclass(frozen=True)
@@ -28,15 +31,14 @@ class Transition:
     Raises
     ------
     ValueError
-        If the exponent is not positive.
+        If no boundary layer has such an exponent.
     """
 
     n_crit: float = 5.0
 
     def __post_init__(self) -> None:
         """Refuse exponents that no boundary layer has."""
-        if not 0.0 < self.n_crit < float("inf"):
-            raise ValueError(f"n_crit must be positive; it is {self.n_crit:g}")
+        _N_CRIT.require("n_crit", self.n_crit)
 
 
 @dataclasses.dataclass(frozen=True)

@@ -7,6 +7,8 @@ nomenclature page (docs/conventions.md) come from this table. Nothing here is sl
 from __future__ import annotations
 
 import dataclasses
+import math
+import reprlib
 from typing import Any
 
 # Records that hold quantities that are asked for, as a dotted path from the request; results have
@@ -14,6 +16,64 @@ from typing import Any
 POINT, AIR, CHANGE = "point", "point.air", "change"
 LOADS, SELF_NOISE, FIDELITY = "model.loads", "model.noise.broadband", "model.fidelity"
 LISTENING = "listening"
+
+
+@dataclasses.dataclass(frozen=True)
+class Range:
+    """Values that a number may have: wide, but such that something of the kind can exist.
+
+    Attributes
+    ----------
+    lowest, highest : float
+        Ends of the range, which belong to it.
+    unit : str
+        Unit of the number, as messages have it; empty where there is none.
+    or_zero : bool
+        Whether 0, which is below the range, is allowed beside it.
+    """
+
+    lowest: float
+    highest: float
+    unit: str = ""
+    or_zero: bool = False
+
+    def __str__(self) -> str:
+        """Describe the range in words that follow "must be"."""
+        zero = "0 or " if self.or_zero else ""
+        unit = f" {self.unit}" if self.unit else ""
+        return f"{zero}within {self.lowest:.10g} ... {self.highest:.10g}{unit}"
+
+    def __contains__(self, value: float) -> bool:
+        """Whether a number is allowed; what is no number is not."""
+        return self.lowest <= value <= self.highest or (self.or_zero and value == 0.0)
+
+    def require(self, name: str, value: Any, error: type[ValueError] = ValueError) -> None:
+        """Refuse a value that is not in the range.
+
+        Parameters
+        ----------
+        name : str
+            Name of the value in the message.
+        value : float
+            The value.
+        error : type
+            Exception that is raised, a ValueError.
+
+        Raises
+        ------
+        ValueError
+            If the value is no number or outside the range; an exception of the type `error`.
+        """
+        try:
+            number = float(value)
+            if isinstance(value, str | bytes):
+                raise TypeError
+        except (TypeError, ValueError):
+            raise error(f"{name} must be a number; it is {reprlib.repr(value)}") from None
+        except OverflowError:  # a whole number of hundreds of digits
+            number = math.inf
+        if number not in self:
+            raise error(f"{name} must be {self}; it is {number:.10g}")
 
 
 @dataclasses.dataclass(frozen=True)
@@ -45,6 +105,8 @@ class Quantity:
         Word that stands for the value of the option in its help; empty for a switch.
     help : str
         Help of the option; by default the meaning with the unit.
+    allowed : Range or None
+        Values that are allowed; None for words, switches and results.
     """
 
     name: str
@@ -58,6 +120,7 @@ class Quantity:
     option: str = ""
     placeholder: str = ""
     help: str = ""
+    allowed: Range | None = None
 
     def __post_init__(self) -> None:
         """Fill in the names that are the same."""
@@ -74,42 +137,60 @@ _ASKED = (
     Quantity(
         "rpm", "rpm", "rotation speed", POINT, option="--rpm", placeholder="N",
         help="rotation speed [rev/min]",
+        allowed=Range(0.001, 1e6, "rpm", or_zero=True),
     ),
     Quantity(
         "thrust", "N", "thrust of all blades", POINT, variable="thrust_required",
         option="--thrust", placeholder="N", help="find the rotation speed that gives this thrust"
         " [N]",
+        allowed=Range(1e-9, 1e9, "N"),
     ),
     Quantity(
         "speed", "m/s", "axial flight speed, 0 is hover", POINT, 0.0, option="--speed",
         placeholder="M_S", help="flight speed along the axis [m/s], default 0: hover",
+        allowed=Range(0.0, 1000.0, "m/s"),
     ),
     Quantity(
         "density", "kg/m**3", "density of the air", AIR, 1.225, json="rho", option="--rho",
         placeholder="KG_M3", help="air density [kg/m3], default 1.225",
+        allowed=Range(1e-4, 2000.0, "kg/m3"),
     ),
-    Quantity("sound_speed", "m/s", "speed of sound", AIR, 340.294),
-    Quantity("dynamic_viscosity", "Pa*s", "dynamic viscosity of the air", AIR, 1.789e-5),
-    Quantity("temperature", "K", "temperature of the air that absorbs sound", AIR, 288.15),
-    Quantity("pressure", "Pa", "pressure of the air that absorbs sound", AIR, 101325.0),
-    Quantity("relative_humidity", "", "relative humidity of the air, 0 ... 1", AIR, 0.7),
+    Quantity("sound_speed", "m/s", "speed of sound", AIR, 340.294,
+        allowed=Range(50.0, 3000.0, "m/s"),
+    ),
+    Quantity("dynamic_viscosity", "Pa*s", "dynamic viscosity of the air", AIR, 1.789e-5,
+        allowed=Range(1e-7, 1.0, "Pa s"),
+    ),
+    Quantity("temperature", "K", "temperature of the air that absorbs sound", AIR, 288.15,
+        allowed=Range(20.0, 1000.0, "K"),
+    ),
+    Quantity("pressure", "Pa", "pressure of the air that absorbs sound", AIR, 101325.0,
+        allowed=Range(1.0, 1e8, "Pa"),
+    ),
+    Quantity("relative_humidity", "", "relative humidity of the air, 0 ... 1", AIR, 0.7,
+        allowed=Range(0.0, 1.0),
+    ),
     Quantity(
         "twist_offset_deg", "deg", "added to the blade angle everywhere", CHANGE, 0.0,
         per_node=False, option="--twist-offset", placeholder="DEG",
         help="added to the blade angle everywhere [deg], default 0",
+        allowed=Range(-180.0, 180.0, "deg"),
     ),
     Quantity(
         "chord_factor", "", "times the chord everywhere", CHANGE, 1.0, per_node=False,
         option="--chord-factor", placeholder="F", help="times the chord everywhere, default 1",
+        allowed=Range(0.001, 100.0),
     ),
     Quantity(
         "diameter", "m", "diameter from tip to tip, which stretches the whole blade", CHANGE,
         per_node=False, option="--diameter", placeholder="M",
         help="stretches the whole blade [m]; default the propeller's",
+        allowed=Range(0.001, 1000.0, "m"),
     ),
     Quantity(
         "n_blades", "", "number of blades", CHANGE, per_node=False, option="--blades",
         placeholder="B", help="number of blades; default the propeller's",
+        allowed=Range(1, 40),
     ),
     Quantity(
         "viscous", "", "lattice held to the polars of the sections", LOADS, True, per_node=False,
@@ -186,3 +267,25 @@ VARIABLES = {
     for quantity in ASKED.values()
     if quantity.record in (POINT, CHANGE) or quantity.name == "density"
 }
+
+
+def require_asked(name: str, value: Any, error: type[ValueError] = ValueError) -> None:
+    """Refuse a value of a quantity that is outside its range.
+
+    Parameters
+    ----------
+    name : str
+        Name of a quantity in `ASKED` that is a number.
+    value : float
+        The value.
+    error : type
+        Exception that is raised, a ValueError.
+
+    Raises
+    ------
+    ValueError
+        If the value is no number or out of range; an exception of the type `error`.
+    """
+    allowed = ASKED[name].allowed
+    assert allowed is not None  # words and switches have no range
+    allowed.require(name, value, error)

@@ -4,10 +4,9 @@ from __future__ import annotations
 
 import dataclasses
 
-import numpy as np
-
 from propmdao.records.air import Air
 from propmdao.records.pytrees import Scalar, record
+from propmdao.records.quantities import require_asked
 from propmdao.records.units import RAD_PER_S
 
 
@@ -37,41 +36,6 @@ class RotorState:
     def turning(self, rotation_speed: Scalar) -> RotorState:
         """The same flight at another rotation speed [rad/s]."""
         return dataclasses.replace(self, rotation_speed=rotation_speed)
-
-
-_OR_MORE = {"rpm": "0", "speed": "0 m/s"}
-_POSITIVE = {
-    "thrust": "N",
-    "density": "kg/m3",
-    "sound_speed": "m/s",
-    "dynamic_viscosity": "Pa s",
-    "temperature": "K",
-    "pressure": "Pa",
-}
-
-
-def require_operable(name: str, value: float) -> None:
-    """Refuse a value of an operating point that is out of range; call it outside ``jit``.
-
-    Parameters
-    ----------
-    name : str
-        Name of the value, a field of `OperatingPoint` or `Air`.
-    value : float
-        Value as it is asked for.
-
-    Raises
-    ------
-    ValueError
-        If rotation or flight is backwards, a property of the air or the thrust not positive, or
-        the value not finite.
-    """
-    if name in _OR_MORE and not 0.0 <= value < np.inf:
-        raise ValueError(f"{name} must be {_OR_MORE[name]} or more; it is {value:g}")
-    if name in _POSITIVE and not 0.0 < value < np.inf:
-        raise ValueError(f"{name} must be positive; it is {value:g} {_POSITIVE[name]}")
-    if not np.isfinite(value):
-        raise ValueError(f"{name} must be finite; it is {value:g}")
 
 
 @dataclasses.dataclass(frozen=True)
@@ -104,12 +68,14 @@ class OperatingPoint:
         """Refuse points without exactly one of rpm and thrust, or with values out of range."""
         if (self.rpm is None) == (self.thrust is None):
             raise ValueError("give either rpm or thrust")
-        for name in ("rpm", "thrust", "speed"):
-            value = getattr(self, name)
-            if value is not None:
-                require_operable(name, value)
+        if self.rpm is not None:
+            require_asked("rpm", self.rpm)
+        if self.thrust is not None:
+            require_asked("thrust", self.thrust)
+        require_asked("speed", self.speed)
+        # Not by Air itself, which JAX makes of what it traces.
         for field in dataclasses.fields(self.air):
-            require_operable(field.name, getattr(self.air, field.name))
+            require_asked(field.name, getattr(self.air, field.name))
 
     def at(self, rotation_speed: Scalar) -> RotorState:
         """State of the rotor at a rotation speed.

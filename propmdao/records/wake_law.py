@@ -5,6 +5,12 @@ from __future__ import annotations
 import dataclasses
 
 from propmdao.records.pytrees import Scalar, record
+from propmdao.records.quantities import Range
+
+# The longest and finest wake has 36,000 nodes on a filament.
+_TURNS = Range(0.01, 100.0)
+_STEP_DEG = Range(1.0, 360.0, "deg")
+_GROWTH = Range(1.0, 100.0)
 
 
 @record
@@ -55,7 +61,7 @@ class WakeGrid:
     Raises
     ------
     ValueError
-        If the wake has no length, or its steps no size.
+        If a number is out of range.
     """
 
     turns: float = 6.0
@@ -64,10 +70,8 @@ class WakeGrid:
     last_step_deg: float = 30.0
 
     def __post_init__(self) -> None:
-        """Refuse lengths and steps that are not positive, and a growth below 1."""
-        for name in ("turns", "first_step_deg", "last_step_deg"):
-            value = getattr(self, name)
-            if not 0.0 < value < float("inf"):
-                raise ValueError(f"{name} of a wake must be positive; it is {value:g}")
-        if not 1.0 <= self.growth < float("inf"):
-            raise ValueError(f"growth of a wake's steps must be 1 or more; it is {self.growth:g}")
+        """Refuse lengths and steps of which no wake is made."""
+        _TURNS.require("turns of a wake", self.turns)
+        for name in ("first_step_deg", "last_step_deg"):
+            _STEP_DEG.require(f"{name} of a wake", getattr(self, name))
+        _GROWTH.require("growth of a wake's steps", self.growth)

@@ -196,7 +196,10 @@ def test_a_saved_result_says_what_was_asked_of_which_blade():
     [
         ({"change": {"twist": 1.0}}, "Change has no 'twist'; it has chord_factor, diameter"),
         ({"point": {"rpm": 1.0, "thrust": 1.0}}, "give either rpm or thrust"),
-        ({"model": {"fidelity": {"n_harmonics": 0}}}, "n_harmonics must be at least 1; it is 0"),
+        (
+            {"model": {"fidelity": {"n_harmonics": 0}}},
+            "n_harmonics must be within 1 ... 1000; it is 0",
+        ),
     ],
 )
 def test_a_saved_request_that_is_none_is_refused(spoil, message):

@@ -116,11 +116,14 @@ def test_air_that_absorbs(arguments: str, air: dict[str, float]) -> None:
     [
         ("--arc 2", "--arc 2 needs one radius and then at least one elevation"),
         ("--arc 1:2:1 0", "--arc 1 needs one radius"),
-        ("--circle 2 0 1.5", "--circle needs a whole number N of observers; it is 1.5"),
+        (
+            "--circle 2 0 1.5",
+            "--circle needs a whole number N of observers, 1 ... 20000; it is 1.5",
+        ),
         ("--circle 2 0 0", "it is 0"),
         ("--hemisphere 2 7", "step of a hemisphere must divide 90 deg; got 7"),
-        ("--hemisphere 2 0.01", "a STEP of 1 deg or more; it is 0.01"),
-        ("--grid 0:999:1 0:99:1 -2", "--grid has 100000 observers, at most 20000"),
+        ("--hemisphere 2 0.01", "step of a hemisphere must be within 1 ... 90 deg; it is 0.01"),
+        ("--grid 0:999:1 0:99:1 -2", "100000 observers are more than the 20000"),
         ("--grid 0:99:1 0:99:1 -2 --grid 0:99:1 0:99:1 -3 --arc 2 0", "20001 observers are more"),
     ],
 )
@@ -132,7 +135,7 @@ def test_observers_that_are_none(arguments: str, message: str) -> None:
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
-        ("--ground 0", "height above ground must be positive .m.; it is 0"),
+        ("--ground 0", "height above ground must be within 0.001 ... 1000000 m; it is 0"),
         ("--absorption 1 2 3 4", "at most; it has 4 values"),
         ("--absorption 51", "temperature must be within -20 ... 50 degrees Celsius; it is 51"),
         ("--absorption 15 101", "relative humidity must be within 0 ... 100 %; it is 101"),

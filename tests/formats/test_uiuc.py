@@ -54,8 +54,11 @@ def test_uiuc_geometry_is_read_in_either_form(text: str, tmp_path: Path) -> None
         ("r/R c/R beta 0.15 0.1 20\n1 0.2 5\n", ", line 1: three numbers r/R c/R beta expected"),
         ("h\ninf inf inf\n1 0.2 5\n", ", line 2: 'inf' is not finite"),
         ("h\n0.15 0.1 1e308\n1 0.2 5\n", ", line 2: '1e308' is out of range"),
-        ("h\n0.15 0.1 20\n1 -0.2 5\n", ": c_over_R must be positive; station 2 (r/R 1) has -0.2"),
-        ("h\n", ": r_over_R must hold at least 2 stations; it holds 0"),
+        (
+            "h\n0.15 0.1 20\n1 -0.2 5\n",
+            ": c_over_R must be within 1e-06 ... 10; station 2 (r/R 1) has -0.2",
+        ),
+        ("h\n", ": r_over_R must hold 2 ... 1000 stations; it holds 0"),
     ],
 )
 def test_a_wrong_geometry_file_names_the_line_or_the_station(

@@ -34,13 +34,18 @@ def test_equal_models_are_one_model_to_the_compiler():
     [
         (SelfNoiseModel, {"trip": "some"}, "trip must be one of none, light, heavy; it is 'some'"),
         (SelfNoiseModel, {"tip": "round"}, "tip must be one of rounded, square; it is 'round'"),
-        (Transition, {"n_crit": 0.0}, "n_crit must be positive; it is 0"),
-        (Transition, {"n_crit": float("nan")}, "n_crit must be positive; it is nan"),
-        (Fidelity, {"n_chordwise": 1}, "n_chordwise must be at least 2; it is 1"),
-        (Fidelity, {"n_spanwise": 0}, "n_spanwise must be at least 2; it is 0"),
-        (Fidelity, {"n_contour": 4}, "n_contour must be at least 5; it is 4"),
-        (Fidelity, {"n_surface_span": 1}, "n_surface_span must be at least 2; it is 1"),
-        (Fidelity, {"n_harmonics": 0}, "n_harmonics must be at least 1; it is 0"),
+        (Transition, {"n_crit": 0.0}, "n_crit must be within 0.1 ... 30; it is 0"),
+        (Transition, {"n_crit": float("nan")}, "n_crit must be within 0.1 ... 30; it is nan"),
+        (Fidelity, {"n_chordwise": 1}, "n_chordwise must be within 2 ... 100; it is 1"),
+        (Fidelity, {"n_spanwise": 0}, "n_spanwise must be within 2 ... 400; it is 0"),
+        (Fidelity, {"n_contour": 4}, "n_contour must be within 5 ... 1001; it is 4"),
+        (Fidelity, {"n_surface_span": 1}, "n_surface_span must be within 2 ... 1001; it is 1"),
+        (Fidelity, {"n_harmonics": 0}, "n_harmonics must be within 1 ... 1000; it is 0"),
+        (
+            Fidelity,
+            {"n_chordwise": 100, "n_spanwise": 400},
+            "n_chordwise times n_spanwise must be at most 4096; it is 40000",
+        ),
     ],
 )
 def test_what_no_model_knows_is_named(record, asked, message):

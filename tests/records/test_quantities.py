@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import math
 from collections import Counter
 
 import pytest
@@ -18,6 +19,8 @@ from propmdao.records.quantities import (
     RESULTS,
     VARIABLES,
     Quantity,
+    Range,
+    require_asked,
 )
 from propmdao.records.states import OperatingPoint
 
@@ -61,6 +64,37 @@ def test_every_number_of_point_air_and_change_stands_in_the_table():
     for record in ("point", "point.air", "change"):
         named = {quantity.name for quantity in ASKED.values() if quantity.record == record}
         assert named == {field.name for field in dataclasses.fields(RECORDS[record])} - {"air"}
+
+
+@pytest.mark.parametrize(
+    "quantity",
+    [
+        quantity
+        for quantity in ASKED.values()
+        if quantity.record in ("point", "point.air", "change")
+    ],
+    ids=lambda quantity: quantity.name,
+)
+def test_every_number_has_a_range_and_its_default_is_in_it(quantity: Quantity):
+    assert quantity.allowed is not None
+    assert quantity.default is None or quantity.default in quantity.allowed
+    for wrong in (math.nan, math.inf, -math.inf, 1e300):
+        with pytest.raises(ValueError, match=f"{quantity.name} must be .*within .*; it is"):
+            require_asked(quantity.name, wrong)
+
+
+def test_a_range_holds_its_ends_and_says_zero_where_that_is_allowed():
+    turning = Range(0.5, 2.0, "rpm", or_zero=True)
+    assert [value in turning for value in (0.0, 0.1, 0.5, 2.0, 2.1)] == [
+        True,
+        False,
+        True,
+        True,
+        False,
+    ]
+    assert str(turning) == "0 or within 0.5 ... 2 rpm" and str(Range(0, 1)) == "within 0 ... 1"
+    with pytest.raises(ValueError, match="^x must be a number; it is None$"):
+        turning.require("x", None)
 
 
 def test_a_sweep_varies_operation_and_blade():

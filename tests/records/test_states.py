@@ -20,17 +20,29 @@ def test_exactly_one_of_rpm_and_thrust_is_given(asked):
 @pytest.mark.parametrize(
     ("asked", "message"),
     [
-        ({"rpm": -1.0}, "rpm must be 0 or more; it is -1"),
-        ({"rpm": math.nan}, "rpm must be 0 or more; it is nan"),
-        ({"rpm": math.inf}, "rpm must be 0 or more; it is inf"),
-        ({"thrust": 0.0}, "thrust must be positive; it is 0 N"),
-        ({"thrust": math.nan}, "thrust must be positive; it is nan N"),
-        ({"rpm": 1.0, "speed": -2.0}, "speed must be 0 m/s or more; it is -2"),
-        ({"rpm": 1.0, "air": Air(density=0.0)}, "density must be positive; it is 0 kg/m3"),
-        ({"rpm": 1.0, "air": Air(sound_speed=-1.0)}, "sound_speed must be positive; it is -1 m/s"),
+        ({"rpm": -1.0}, "rpm must be 0 or within 0.001 ... 1000000 rpm; it is -1"),
+        ({"rpm": math.nan}, "rpm must be 0 or within 0.001 ... 1000000 rpm; it is nan"),
+        ({"rpm": math.inf}, "rpm must be 0 or within 0.001 ... 1000000 rpm; it is inf"),
+        ({"thrust": 0.0}, "thrust must be within 1e-09 ... 1000000000 N; it is 0"),
+        ({"thrust": math.nan}, "thrust must be within 1e-09 ... 1000000000 N; it is nan"),
+        ({"rpm": 1.0, "speed": -2.0}, "speed must be within 0 ... 1000 m/s; it is -2"),
+        (
+            {"rpm": 1.0, "air": Air(density=0.0)},
+            "density must be within 0.0001 ... 2000 kg/m3; it is 0",
+        ),
+        ({"rpm": "fast"}, "rpm must be a number; it is 'fast'"),
+        ({"rpm": 10**400}, "rpm must be 0 or within 0.001 ... 1000000 rpm; it is inf"),
+        (
+            {"rpm": 1.0, "air": Air(temperature=0.0)},
+            "temperature must be within 20 ... 1000 K; it is 0",
+        ),
+        (
+            {"rpm": 1.0, "air": Air(sound_speed=-1.0)},
+            "sound_speed must be within 50 ... 3000 m/s; it is -1",
+        ),
         (
             {"rpm": 1.0, "air": Air(dynamic_viscosity=math.nan)},
-            "dynamic_viscosity must be positive; it is nan Pa s",
+            "dynamic_viscosity must be within 1e-07 ... 1 Pa s; it is nan",
         ),
     ],
 )

@@ -7,12 +7,19 @@ Directions have the names of the rotor's tests: elevation from the rotor plane, 
 
 from __future__ import annotations
 
+import math
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from propmdao.records.listening import DISTANCE, require_number_of_observers
+from propmdao.records.quantities import Range
+
 Positions = NDArray[np.float64]
+# Ten turns: a larger angle is no direction that anybody means.
+_AZIMUTH = Range(-3600.0, 3600.0, "deg")
+_STEP = Range(1.0, 90.0, "deg")
 
 
 class Directions(NamedTuple):
@@ -64,15 +71,17 @@ def point(radius: ArrayLike, elevation_deg: ArrayLike, azimuth_deg: ArrayLike = 
     Raises
     ------
     ValueError
-        If a radius is not positive, an elevation is outside -90 ... 90 deg or an azimuth is not
-        finite.
+        If a radius is not positive or beyond 1000 km, an elevation is outside -90 ... 90 deg or an
+        azimuth is more than ten turns.
     """
     r, elevation, azimuth = np.broadcast_arrays(
         *(np.atleast_1d(np.asarray(q, float)) for q in (radius, elevation_deg, azimuth_deg))
     )
-    _require("radius must be positive and finite [m]", r, (r > 0) & np.isfinite(r))
+    near, far = DISTANCE.lowest, DISTANCE.highest
+    _require(f"radius must be {DISTANCE}", r, (near <= r) & (r <= far))
     _require("elevation must be within -90 ... 90 deg", elevation, np.abs(elevation) <= 90)
-    _require("azimuth must be finite [deg]", azimuth, np.isfinite(azimuth))
+    turn = _AZIMUTH.highest
+    _require(f"azimuth must be {_AZIMUTH}", azimuth, np.abs(azimuth) <= turn)
     el, az = np.radians(elevation), np.radians(azimuth)
     return np.stack(
         [r * np.cos(el) * np.cos(az), r * np.cos(el) * np.sin(az), r * np.sin(el)], axis=-1
@@ -134,6 +143,7 @@ def circle(radius: float, n: int, elevation_deg: float = 0.0) -> Positions:
     """
     if n < 1:
         raise ValueError(f"a circle needs at least 1 observer; got {n}")
+    require_number_of_observers(n)
     return point(radius, elevation_deg, 360 / n * np.arange(n))
 
 
@@ -161,6 +171,7 @@ def sphere(radius: float, elevation_deg: ArrayLike, azimuth_deg: ArrayLike) -> P
         If the radius is not positive, an elevation is outside -90 ... 90 deg or an azimuth is not
         finite.
     """
+    require_number_of_observers(np.size(elevation_deg) * np.size(azimuth_deg))
     elevation, azimuth = np.meshgrid(elevation_deg, azimuth_deg, indexing="ij")
     return point(radius, elevation.ravel(), azimuth.ravel())
 
@@ -184,10 +195,12 @@ def hemisphere(radius: float, step_deg: float = 10.0) -> Positions:
     Raises
     ------
     ValueError
-        If the step does not divide 90 deg or the radius is not positive.
+        If the step does not divide 90 deg or makes more than `MOST_OBSERVERS`, or the radius is
+        not positive.
     """
-    n = round(90 / step_deg) if step_deg > 0 else 0
-    if n < 1 or abs(n * step_deg - 90) > 1e-9:
+    _STEP.require("step of a hemisphere", step_deg)
+    n = round(90 / step_deg)
+    if abs(n * step_deg - 90) > 1e-9:
         raise ValueError(f"step of a hemisphere must divide 90 deg; got {step_deg:g}")
     return sphere(radius, np.linspace(-90, 0, n + 1), np.linspace(0, 360, 4 * n + 1))
 
@@ -204,7 +217,13 @@ def grid(x: ArrayLike, y: ArrayLike, z: ArrayLike) -> Positions:
     -------
     (n_x * n_y * n_z, 3) array
         Positions [m], z running fastest.
+
+    Raises
+    ------
+    ValueError
+        If there would be more than `MOST_OBSERVERS`.
     """
+    require_number_of_observers(math.prod(np.size(values) for values in (x, y, z)))
     return np.stack(np.meshgrid(x, y, z, indexing="ij"), axis=-1).reshape(-1, 3).astype(float)
 
 

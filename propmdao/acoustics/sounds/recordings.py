@@ -13,6 +13,8 @@ from propmdao.acoustics.levels.bands import HALF_BAND, bands_in_bins
 
 #: [Hz]; holds all third octaves that are heard, up to 20 kHz.
 SAMPLE_RATE = 48000
+#: Numbers that a record has room for, all channels together: 240 MB, ten minutes of one channel.
+MOST_SAMPLES = 30_000_000
 
 
 Floats = NDArray[np.float64]

@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from propmdao.runtime.input_files import read_bytes
+from propmdao.runtime.output_files import replacing
 
 MAGIC = 42
 TIMES = {1: "constant", 2: "periodic", 3: "aperiodic"}
@@ -187,7 +188,8 @@ class Writer:
 
     def save(self, path: Path) -> None:
         """Write the file."""
-        path.write_bytes(b"".join(self._parts))
+        with replacing(path) as file:
+            file.write_bytes(b"".join(self._parts))
 
 
 def read_opening(file: Reader, kind: FileKind) -> tuple[list[str], int, Layout]:

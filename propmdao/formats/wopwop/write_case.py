@@ -18,6 +18,7 @@ from propmdao.formats.wopwop.geometry_file import write_geometry
 from propmdao.formats.wopwop.loading_file import write_loading
 from propmdao.formats.wopwop.namelists.groups import write_namelists
 from propmdao.records.air import Air
+from propmdao.runtime.output_files import replacing_in
 
 Groups = list[tuple[str, Mapping[str, Any]]]
 
@@ -61,26 +62,22 @@ def write_rotor_case(
     Forces become one line through the points they act on, from root to tip, with the force per
     length that the trapezoidal rule turns into the same forces again.
     """
-    folder = Path(folder)
     clock = np.asarray(times, float)
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
+    with replacing_in(folder) as files:
         containers: Groups = [
             ("ContainerIn", _container("aircraft", flight, len(rotors))),
             *_bases(flight),
         ]
         for number, (rotor, nodes) in enumerate(zip(rotors, surfaces, strict=True), start=1):
-            containers += _rotor(folder, number, rotor, nodes, float(clock[1] - clock[0]))
+            containers += _rotor(files, number, rotor, nodes, float(clock[1] - clock[0]))
         groups: Groups = [
             ("EnvironmentIn", _environment(len(observers.position))),
             ("EnvironmentConstants", {"rho": float(air.density), "c": float(air.sound_speed)}),
         ]
         groups += _observers(observers, clock) + containers
-        write_namelists(folder / "case.nam", groups)
+        write_namelists(files / "case.nam", groups)
         names = {"globalFolderName": "./", "caseNameFile": "case.nam"}
-        write_namelists(folder / "cases.nam", [("casename", names)])
-    except OSError as error:
-        raise ValueError(f"{folder}: {error.strerror or error}") from None
+        write_namelists(files / "cases.nam", [("casename", names)])
 
 
 def _environment(n_observers: int) -> dict[str, Any]:

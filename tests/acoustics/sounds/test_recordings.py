@@ -140,7 +140,7 @@ def test_full_scale_is_the_peak_rounded_up(peak, scale):
         ),
         (lambda path: write_wav(path, [0.1, np.nan], 1.0), "must be finite; 1 samples are not"),
         (lambda path: write_wav(path, [0.1], 1.0, bits=16), "must be 24 or 32; got 16"),
-        (lambda path: write_wav(path, [0.1], 0.0), r"full scale must be positive .* got 0"),
+        (lambda path: write_wav(path, [0.1], 0.0), r"full scale must be within .* Pa; it is 0"),
         (lambda path: write_wav(path, np.zeros((0, 4)), 1.0), r"pressures; got \(0, 4\)"),
         (lambda path: common_full_scale([0.0]), "nothing to be heard"),
         (lambda path: tone_record([0.0, 0.0], [1, 1], 1.0), "frequency must be positive"),

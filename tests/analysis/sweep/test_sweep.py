@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import dataclasses
+import math
 import subprocess
 import sys
 import time
@@ -24,6 +25,7 @@ from propmdao.records.models import Model, SelfNoiseModel
 from propmdao.records.quantities import BROADBAND_LEVELS, LEVELS
 from propmdao.records.states import OperatingPoint
 from propmdao.records.wake_law import WakeLaw
+from propmdao.runtime.locks import InUseError, locked
 
 PROPELLER = "apcsf_11x4.7"
 
@@ -228,10 +230,14 @@ def test_another_blade_of_the_same_name_is_another_point(
     [
         ([{"speed": 1.0}], "needs either rpm or thrust_required"),
         ([{"rpm": 1.0, "thrust_required": 1.0}], "needs either rpm or thrust_required"),
-        ([{"rpm": 1.0}, {"thrust_required": 1.0}], "in all of them rpm or in all"),
-        ([], "needs points"),
+        ([{"rpm": 1.0}, {"thrust_required": 1.0}], "in all points rpm or in all"),
+        ([], "number of points must be within 1 ... 100000; it is 0"),
         ([{"rpm": 1.0, "sped": 1.0}], "'sped' is no variable"),
         ([{"rpm": 1.0, "n_blades": 2.5}], "n_blades must be a whole number; it is 2.5"),
+        ([{"rpm": 1.0, "n_blades": 1000}], "n_blades must be within 1 ... 40; it is 1000"),
+        ([{"rpm": 1.0}, {"rpm": 1e300}], "rpm must be 0 or within .* rpm; it is 1e"),
+        ([{"rpm": math.nan}], "rpm must be 0 or within .* rpm; it is nan"),
+        ([{"rpm": 1.0}] * 100_001, "number of points must be within 1 ... 100000; it is 100001"),
     ],
 )
 def test_points_that_are_none(
@@ -240,6 +246,29 @@ def test_points_that_are_none(
     with pytest.raises(ValueError, match=said):
         sweep(propeller, points, tmp_path / "sweep.csv")
     assert not (tmp_path / "sweep.csv").exists()
+
+
+def test_a_table_is_of_one_sweep_at_a_time(
+    analyzer: Any, propeller: Propeller, tmp_path: Path
+) -> None:
+    """Two at once would each analyse all points and write every row twice."""
+    path = tmp_path / "new" / "sweep.csv"
+    path.parent.mkdir()
+    with locked(path), pytest.raises(InUseError, match=r"sweep\.csv' is in use by process \d+ on "):
+        sweep(propeller, [{"rpm": 3000.0}], path)
+    assert analyzer.asked == [] and not path.exists()
+    assert sweep(propeller, [{"rpm": 3000.0}], path) == (1, [])
+    assert [file.name for file in path.parent.iterdir()] == ["sweep.csv"]
+
+
+def test_a_parquet_file_that_cannot_be_written_is_known_before_the_work(
+    analyzer: Any, propeller: Propeller, tmp_path: Path
+) -> None:
+    pytest.importorskip("pyarrow.parquet", reason="pyarrow, an extra, is not installed")
+    (tmp_path / "sweep.parquet").mkdir()
+    with pytest.raises(ValueError, match=r"sweep\.parquet: cannot be written: it is a folder"):
+        sweep(propeller, [{"rpm": 3000.0}], tmp_path / "sweep.parquet")
+    assert analyzer.asked == []
 
 
 def test_parquet_is_written_beside_csv(analyzer: Any, propeller: Propeller, tmp_path: Path) -> None:

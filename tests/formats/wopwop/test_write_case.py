@@ -157,7 +157,7 @@ def test_what_cannot_be_written(tmp_path, rotor, nodes):
         write_rotor_case(tmp_path, [nothing], [None], listeners, t, AIR)
     file = tmp_path / "file"
     file.write_text("")
-    with pytest.raises(ValueError, match="file: File exists"):
+    with pytest.raises(ValueError, match="file: cannot be written: File exists"):
         write_rotor_case(file, [rotor], [nodes], listeners, t, AIR)
     one = PointLoads(jnp.ones((1, 3)), jnp.ones((1, 3)))
     with pytest.raises(ValueError, match="must act at 2 or more points"):

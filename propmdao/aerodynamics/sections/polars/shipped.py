@@ -20,6 +20,7 @@ from propmdao.aerodynamics.sections.polars.neuralfoil_tables import (
 )
 from propmdao.propeller.airfoils.airfoil import naca4
 from propmdao.propeller.airfoils.library import find_airfoil
+from propmdao.runtime.output_files import replacing
 
 #: Maximum camber and thickness over chord of the tables; negative camber follows by symmetry.
 CAMBER: FloatArray = np.array([0.0, 0.015, 0.03, 0.045, 0.06, 0.075, 0.09])
@@ -95,16 +96,17 @@ def generate(path: Path) -> None:
         packed.append(np.diff(whole, n=2, axis=-1, prepend=np.zeros((*whole.shape[:-1], 2), int)))
         lows.append(low)
         highs.append(high)
-    np.savez_compressed(
-        path,
-        packed=np.stack(packed).astype(np.int16),
-        low=np.stack(lows).astype(np.int8),
-        high=np.stack(highs).astype(np.int8),
-        camber=CAMBER,
-        thickness=THICKNESS,
-        reynolds=REYNOLDS,
-        settings=np.array(neuralfoil_settings(SHIPPED_N_CRIT)),
-    )
+    with replacing(path) as file:
+        np.savez_compressed(
+            file,
+            packed=np.stack(packed).astype(np.int16),
+            low=np.stack(lows).astype(np.int8),
+            high=np.stack(highs).astype(np.int8),
+            camber=CAMBER,
+            thickness=THICKNESS,
+            reynolds=REYNOLDS,
+            settings=np.array(neuralfoil_settings(SHIPPED_N_CRIT)),
+        )
 
 
 def limits(coefficients: FloatArray, confidence: FloatArray) -> tuple[IntArray, IntArray]:

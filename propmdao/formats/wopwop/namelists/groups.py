@@ -13,6 +13,7 @@ from propmdao.formats.wopwop.binary import WopwopFileError
 from propmdao.formats.wopwop.namelists.keys import without_effect
 from propmdao.formats.wopwop.namelists.syntax import formatted, parse
 from propmdao.runtime.input_files import read_text
+from propmdao.runtime.output_files import replacing
 
 #: Largest of numbers that count groups, which a file has to hold one by one.
 MOST = 100_000
@@ -139,7 +140,8 @@ def write_namelists(path: str | Path, groups: Iterable[tuple[str, Mapping[str, A
         Names and values of the groups, in the order of the file; names may repeat.
     """
     text = "".join(formatted(name, values) for name, values in groups)
-    Path(path).write_text(text, encoding="latin-1")
+    with replacing(path) as file:
+        file.write_text(text, encoding="latin-1")
 
 
 def _is_number(value: Any) -> bool:
