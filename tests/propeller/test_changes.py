@@ -72,5 +72,5 @@ def test_the_checksum_is_that_of_the_numbers():
 def test_a_change_that_is_no_number_is_named_itself(name):
     """Not the distribution that it would have changed."""
     for value in (float("nan"), float("inf"), "1"):
-        with pytest.raises(ValueError, match=f"^{name} must be a finite number; it is"):
+        with pytest.raises(ValueError, match=f"^{name} must be "):
             Change(**{name: value})
