@@ -95,21 +95,53 @@ def pressure_history(
     Raises
     ------
     ValueError
-        If there are too few times for the harmonics, or the rotor stands still.
+        If there are too few times for the harmonics, the frequencies are not multiples of the
+        first, or the rotor stands still.
     """
-    passage_hz = float(np.asarray(frequency_hz)[0])
+    passage_hz = passage_frequency(frequency_hz)
     amplitude = np.asarray(amplitude)
     n_harmonics = amplitude.shape[-1]
     if n_times <= 2 * n_harmonics:
         raise ValueError(
             f"n_times must be more than twice the {n_harmonics} harmonics; got {n_times}"
         )
-    if not passage_hz > 0:
-        raise ValueError(f"the blade passage frequency must be positive [Hz]; got {passage_hz:g}")
     spectrum = np.zeros((*amplitude.shape[:-1], n_times // 2 + 1), complex)
     # irfft sums exp(+1j ...), the tones exp(-1j ...)
     spectrum[..., 1 : n_harmonics + 1] = n_times * np.conj(amplitude)
     return np.arange(n_times) / (n_times * passage_hz), np.fft.irfft(spectrum, n_times)
+
+
+def passage_frequency(frequency_hz: ArrayLike) -> float:
+    """Blade passage frequency of tones that repeat with every passage.
+
+    Parameters
+    ----------
+    frequency_hz : (n_harmonics,) array
+        Frequencies of the tones [Hz].
+
+    Returns
+    -------
+    float
+        First frequency [Hz].
+
+    Raises
+    ------
+    ValueError
+        If the first frequency is not positive, or the others are not its multiples 2, 3 ... in
+        turn, as those of a sum of different rotors are not.
+    """
+    frequency = np.asarray(frequency_hz, float)
+    passage_hz = float(frequency[0])
+    if not passage_hz > 0:
+        raise ValueError(f"the blade passage frequency must be positive [Hz]; got {passage_hz:g}")
+    order = np.arange(1, frequency.size + 1)
+    wrong = np.flatnonzero(~(np.abs(frequency / passage_hz - order) < 1e-6 * order))
+    if wrong.size:
+        raise ValueError(
+            f"frequencies must be the multiples of the first, {passage_hz:g} Hz, in turn; number "
+            f"{wrong[0] + 1} is {frequency[wrong[0]]:g} Hz"
+        )
+    return passage_hz
 
 
 @compiled

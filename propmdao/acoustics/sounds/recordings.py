@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from propmdao.acoustics.levels.bands import HALF_BAND, bands_in_bins
+from propmdao.acoustics.levels.decibels import passage_frequency
 
 #: [Hz]; holds all third octaves that are heard, up to 20 kHz.
 SAMPLE_RATE = 48000
@@ -48,12 +49,11 @@ def tone_record(
     Raises
     ------
     ValueError
-        If the rotor stands still or the record holds no sample.
+        If the rotor stands still, the frequencies are not multiples of the first or the record
+        holds no sample.
     """
     p = np.asarray(amplitude)
-    passage_hz = float(np.asarray(frequency_hz)[0])
-    if not passage_hz > 0:
-        raise ValueError(f"the blade passage frequency must be positive [Hz]; got {passage_hz:g}")
+    passage_hz = passage_frequency(np.asarray(frequency_hz, float))
     passages = max(1, round(duration * passage_hz))
     n = round(passages * sample_rate / passage_hz)
     if not (duration > 0 and n > 0):

@@ -102,12 +102,12 @@ def flyover_histories(
         to_hub, hub, velocity = pose.rotation[0], pose.origin[0], pose.velocity[0]
         passing = (np.asarray(observers.velocity, float) - velocity) @ to_hub
         alone = dataclasses.replace(rotor, mount=())
-        fundamental = symmetry(rotor.azimuths) * rotor.rotation_speed
-        n_harmonics = int(max_frequency_hz * 2 * np.pi / abs(fundamental) * (1 + 1e-12))
+        fundamental = symmetry(rotor.azimuths) * abs(rotor.rotation_speed)
+        n_harmonics = int(max_frequency_hz * 2 * np.pi / fundamental * (1 + 1e-12))
         if n_harmonics < 1:
             raise ValueError(
                 f"max_frequency_hz must reach the first tone of {rotor.name}, "
-                f"{abs(fundamental) / (2 * np.pi):g} Hz; it is {max_frequency_hz:g}"
+                f"{fundamental / (2 * np.pi):g} Hz; it is {max_frequency_hz:g}"
             )
         for i, x in enumerate((start - hub) @ to_hub):
             track = _Track(x, passing, velocity @ to_hub / sound_speed)

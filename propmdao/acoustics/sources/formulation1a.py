@@ -60,7 +60,8 @@ def tones(
     Returns
     -------
     Tones
-        Amplitudes of thickness and loading noise [Pa].
+        Amplitudes of thickness and loading noise [Pa]; frequencies are positive whichever way the
+        rotor turns.
 
     Notes
     -----
@@ -92,7 +93,8 @@ def tones(
     amplitudes = jax.lax.map(amplitudes_at, jnp.asarray(observers, float))
     turning = operation.omega != 0
     frequency_hz = n_blades * operation.omega / (2 * np.pi) * np.arange(1, n_harmonics + 1)
-    return Tones(frequency_hz, amplitudes).each(lambda p: jnp.where(turning, p, 0.0))
+    sound = Tones(frequency_hz, amplitudes).each(lambda p: jnp.where(turning, p, 0.0))
+    return sound.of_positive_frequency
 
 
 class _Blade(NamedTuple):

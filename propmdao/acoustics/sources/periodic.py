@@ -54,7 +54,8 @@ def rotor_tones(
     Returns
     -------
     Tones
-        Amplitudes of every source [Pa], zero at zero rotation speed.
+        Amplitudes of every source [Pa], zero at zero rotation speed. Frequencies are positive
+        whichever way the rotor turns.
 
     Raises
     ------
@@ -103,7 +104,8 @@ def rotor_tones(
             n_harmonics,
         )
         parts[name] = TONAL_SOURCES[name].scale(air) * (blade * blades)
-    return Tones(jnp.asarray(orders * omega / (2 * np.pi)), parts)
+    frequency_hz = jnp.asarray(orders * omega / (2 * np.pi))
+    return Tones(frequency_hz, parts).of_positive_frequency
 
 
 def symmetry(azimuths: ArrayLike) -> int:
