@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 from propmdao.acoustics.levels.decibels import mean_square, oaspl_db, spl_db
 from propmdao.acoustics.levels.weighting import oaspl_dba
 from propmdao.acoustics.sources.formulation1a import tones

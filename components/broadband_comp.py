@@ -127,9 +127,8 @@ class BroadbandComp(NodesComp):
         self.function = _broadband
         self.static = int(propeller.n_blades), SelfNoiseModel(trip=self.options["trip"])
         self.constants = blade, strip_interpolation(stations, ns)
-        self.axes = dict.fromkeys(
-            self.output_shapes(), ("observer", [f"{frequency:g} Hz" for frequency in BANDS_HZ])
-        )
+        bands = [f"{frequency:g} Hz" for frequency in BANDS_HZ]
+        self.axes = {name: ("observer", bands) for name in self.output_shapes()}
 
     def check_inputs(self, inputs: Arrays) -> None:
         super().check_inputs(inputs)

@@ -25,6 +25,7 @@ from propmdao.components.bases.refusals import (
     require_numbers,
     require_real,
 )
+from propmdao.runtime.finite import Axis
 
 
 class JaxComponent(om.ExplicitComponent):
@@ -45,7 +46,7 @@ class JaxComponent(om.ExplicitComponent):
     constants: Any = None
     static: Hashable = None
     #: Words for the axes of outputs, for messages.
-    axes: Mapping[str, tuple[str, ...]] = {}
+    axes: Mapping[str, tuple[Axis, ...]] = {}
 
     def __init__(self, **options: Any) -> None:
         super().__init__(**options)

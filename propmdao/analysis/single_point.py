@@ -199,8 +199,10 @@ def _require_numbers(analysis: Analysis) -> None:
         for field in dataclasses.fields(record):
             if isinstance(value := getattr(record, field.name), Array):
                 require_finite(field.name, value, where=where)
-    for name, values in {"load_position": loads.point_loads.position,
-                         "load_force": loads.point_loads.force}.items():
+    for name, values in {
+        "load_position": loads.point_loads.position,
+        "load_force": loads.point_loads.force,
+    }.items():
         require_finite(name, values, "load", where=where)
     for name, pressure in analysis.tones.parts.items():
         require_finite(f"{name} noise", pressure, "observer", "harmonic", where=where)

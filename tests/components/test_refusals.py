@@ -65,7 +65,9 @@ POINTS = [
 
 
 @pytest.mark.parametrize(("component", "name", "value"), POINTS)
-def test_points_that_the_command_line_refuses_are_refused_in_its_words(pair, component, name, value):
+def test_points_that_the_command_line_refuses_are_refused_in_its_words(
+    pair, component, name, value
+):
     """With the node, and at rest, too, where nothing is computed."""
     asked = {"air": Air(density=value)} if name == "density" else {name: value}
     with pytest.raises(ValueError, match="must be") as refused:
@@ -166,7 +168,7 @@ def test_complex_step_is_refused_in_one_line(propeller, small):
     prob.model.add_subsystem("propeller", group, promotes=["*"])
     prob.setup(force_alloc_complex=True)
     prob.run_model()
-    message = "has exact derivatives and no complex step: check them with method=\"fd\""
+    message = 'has exact derivatives and no complex step: check them with method="fd"'
     with pytest.raises(RuntimeError, match=message):
         prob.check_totals(of=["thrust"], wrt=["rpm"], method="cs", out_stream=None)
     prob.set_complex_step_mode(False)
