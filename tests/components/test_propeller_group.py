@@ -212,6 +212,7 @@ def test_totals_against_differences(problem, assert_totals, point_inputs, trim, 
     prob = problem(
         trim=trim,
         design_distributions={"beta": [0.15, 0.5, 1.0], "thickness_over_chord": [0.15, 1.0]},
+        control="values",
         camber="design_lift_coefficient",
         broadband=True,
     )

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-PAGE = Path(__file__).parents[1] / "docs" / "plugging_in.md"
+PAGE = Path(__file__).parents[2] / "docs" / "plugging_in.md"
 BLOCKS = (
     re.findall(r"## ([^\n]*)\n(?:(?!\n## ).)*?```python\n(.*?)```", PAGE.read_text("utf-8"), re.S)
     if PAGE.exists()
