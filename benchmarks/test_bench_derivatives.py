@@ -42,6 +42,7 @@ def problem() -> om.Problem:
             propeller=propeller,
             observers=arc(1.905, np.array([-45.0])),
             design_distributions=dict.fromkeys(DISTRIBUTIONS, points),
+            control="values",
         ),
         promotes=["*"],
     )

@@ -18,6 +18,7 @@ def low_noise() -> om.Problem:
             propeller="apcsf_11x4.7",
             observers=pm.arc(1.905, -45.0),
             design_distributions={"beta": three_points, "chord_over_R": three_points},
+            control="values",
             rpm_bounds=(3000.0, 6000.0),
         ),
         promotes=["*"],

@@ -28,6 +28,7 @@ from propmdao.geometry.lattice import strip_interpolation
 from propmdao.propeller.description import Propeller
 from propmdao.records.models import SelfNoiseModel
 from propmdao.records.quantities import BROADBAND_LEVELS
+from propmdao.runtime.finite import Axis
 
 _SILENCE_DB = -200.0
 
@@ -127,8 +128,8 @@ class BroadbandComp(NodesComp):
         self.function = _broadband
         self.static = int(propeller.n_blades), SelfNoiseModel(trip=self.options["trip"])
         self.constants = blade, strip_interpolation(stations, ns)
-        bands = [f"{frequency:g} Hz" for frequency in BANDS_HZ]
-        self.axes = dict.fromkeys(self.output_shapes(), ("observer", bands))
+        axes: tuple[Axis, ...] = ("observer", [f"{frequency:g} Hz" for frequency in BANDS_HZ])
+        self.axes = dict.fromkeys(self.output_shapes(), axes)
 
     def check_inputs(self, inputs: Arrays) -> None:
         super().check_inputs(inputs)

@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-import numpy as np
 import openmdao.api as om
 
 from propmdao.aerodynamics.sections.polars.family import SectionPolars
@@ -20,6 +18,7 @@ from propmdao.components.geometry_comp import (
     blade_distributions,
     declare_camber,
 )
+from propmdao.components.inputs.control_points import add_control_points, declare_control_points
 from propmdao.components.inputs.model_options import declare_model, model_of
 from propmdao.components.inputs.noise_inputs import declare_observers
 from propmdao.components.inputs.rotor_inputs import declare_polars
@@ -32,7 +31,6 @@ from propmdao.records.models import Model
 
 TRIMS = ("thrust", "rpm")
 TRIM_METHODS = ("solve", "two_point")
-SPLINE_METHODS = ("slinear", "akima", "cubic")
 
 
 class PropellerGroup(om.Group):
@@ -65,7 +63,7 @@ design_lift_coefficient : (n_stations,) arrays
         Distributions at the propeller's stations, `beta` in ``rad``, initially the propeller's; of
         the last two the one that the option `camber` names. One that is named in
         `design_distributions` is replaced by its control points, `chord_over_R_cp` and so on,
-        (n_control_points,) arrays.
+        (n_control_points,) arrays: increments, factors of the chord, or values, as `control` says.
 
     Outputs
     -------
@@ -106,6 +104,11 @@ design_lift_coefficient : (n_stations,) arrays
         the rule of the thesis, which misses it by some per cent (`RotationSpeedComp`).
     design_distributions : dict
         Distribution name -> r/R of its control points, from the first station to the tip.
+    control : {"increments", "values"}
+        What the curve through control points gives. "increments" (the default): what is added to
+        the described distribution, or for `chord_over_R` factors of it; 0, and 1 for the chord,
+        is the described blade. "values": the distribution itself, initially interpolated at the
+        control points, which changes the blade between them; the largest change is warned of.
     spline_method : str
         Curve through the control points: ``"slinear"`` (straight lines, the default), ``"akima"``
         or ``"cubic"``.
@@ -151,8 +154,7 @@ design_lift_coefficient : (n_stations,) arrays
         declare("trim", "thrust", values=TRIMS, desc="input that the rotation speed follows")
         declare_bounds(self.options)
         declare("trim_method", "solve", values=TRIM_METHODS, desc="rule for the rotation speed")
-        declare("design_distributions", {}, types=dict, desc="r/R of control points by name")
-        declare("spline_method", "slinear", values=SPLINE_METHODS, desc="curve through them")
+        declare_control_points(self.options)
         declare_camber(self.options)
 
     def setup(self) -> None:
@@ -173,7 +175,7 @@ design_lift_coefficient : (n_stations,) arrays
         """Splines of the design distributions, and the meshes that they shape."""
         options = self.options
         initial = blade_distributions(propeller, options["camber"])
-        self._add_splines(propeller.r_over_R, initial)
+        self._splined = add_control_points(self, propeller.r_over_R, initial)
         self.add_subsystem(
             "geometry",
             GeometryComp(
@@ -186,7 +188,7 @@ design_lift_coefficient : (n_stations,) arrays
             promotes_outputs=["*"],
         )
         self.set_input_defaults("diameter", val=propeller.diameter, units="m")
-        for name in options["design_distributions"]:
+        for name in self._splined:
             self._take_from_spline("geometry", name)
 
     def _add_loads(self, propeller: Propeller, polars: SectionPolars | None) -> None:
@@ -225,55 +227,13 @@ design_lift_coefficient : (n_stations,) arrays
             promotes_inputs=["*"],
             promotes_outputs=["*"],
         )
-        if "thickness_over_chord" in self.options["design_distributions"]:
+        if "thickness_over_chord" in self._splined:
             self._take_from_spline("broadband", "thickness_over_chord")
 
     def _take_from_spline(self, component: str, name: str) -> None:
         """Promote a distribution that is splined: SplineComp's output has a leading axis of one."""
         self.promotes(component, inputs=[name], src_indices=om.slicer[0, :])
 
-    def _add_splines(self, stations: np.ndarray, initial: Mapping[str, np.ndarray]) -> None:
-        """Control points to stations, a spline for each design distribution."""
-        for name, control_points in self.options["design_distributions"].items():
-            points = _control_points(name, control_points, initial, stations)
-            values = np.interp(points, stations, initial[name])
-            units = "rad" if name == "beta" else None
-            spline = om.SplineComp(
-                method=self.options["spline_method"], x_cp_val=points, x_interp_val=stations
-            )
-            spline.add_spline("cp", name, y_cp_val=values, y_units=units)
-            self.add_subsystem(f"{name}_spline", spline, promotes_outputs=[name])
-            self.promotes(
-                f"{name}_spline",
-                inputs=[("cp", f"{name}_cp")],
-                src_indices=np.arange(points.size),
-                flat_src_indices=True,
-                src_shape=(points.size,),
-            )
-            self.set_input_defaults(f"{name}_cp", val=values, units=units)
-
 
 def _described(_: Any, propeller: Propeller | str | Path) -> Propeller:
     return propeller if isinstance(propeller, Propeller) else load_propeller(propeller)
-
-
-def _control_points(
-    name: str, control_points: object, known: Mapping[str, object], stations: np.ndarray
-) -> np.ndarray:
-    if name not in known:
-        raise ValueError(
-            f"design_distributions: unknown distribution '{name}'; there are {', '.join(known)}"
-        )
-    points = np.asarray(control_points, dtype=float)
-    if points.ndim != 1 or points.size < 2 or np.any(np.diff(points) <= 0.0):
-        raise ValueError(
-            f"design_distributions: control points of {name} must be at least two rising r/R; "
-            f"they are {points.tolist()}"
-        )
-    if points[0] > stations[0] or points[-1] < stations[-1]:
-        raise ValueError(
-            f"design_distributions: control points of {name} must reach from "
-            f"{stations[0]:g} to {stations[-1]:g} r/R; they reach from {points[0]:g} to "
-            f"{points[-1]:g}"
-        )
-    return points

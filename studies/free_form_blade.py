@@ -95,6 +95,7 @@ def build_problem(
         fidelity=fidelity or thesis.FIDELITY,
         broadband=True,
         design_distributions=dict.fromkeys(BOUNDS, AT),
+        control="values",  # bounds and slopes are of chord and twist themselves
         spline_method="cubic",  # linear in its control points: Akima's kinks would be the blade's
     )
     model.add_subsystem("propeller", blade, promotes=["*"])

@@ -78,6 +78,7 @@ def build_problem(torque_limit: float) -> om.Problem:
         rpm_bounds=RPM_BOUNDS,
         camber=CL_I,
         design_distributions={name: list(AT.values()) for name in BOUNDS},
+        control="values",  # the thesis' six numbers are the blade
     )
     prob = om.Problem(reports=False)
     prob.model.add_subsystem("propeller", propeller, promotes=["*"])

@@ -41,6 +41,7 @@ class Flight(om.Group):
             num_nodes=n,
             fidelity=self.options["fidelity"],
             design_distributions={"beta": RADII},
+            control="values",
         )
         self.add_subsystem("propeller", propeller, promotes=["*"])
         pressure = f"(0.5 * density * speed**2 * {WING_AREA})"

@@ -49,6 +49,7 @@ def multi_point(
         observers=OBSERVERS,
         fidelity=fidelity,
         design_distributions={"beta": RADII, "chord_over_R": RADII},
+        control="values",
         broadband=True,
     )
     prob.model.add_subsystem("propeller", group, promotes=["*"])

@@ -44,6 +44,7 @@ def build_problem(fidelity: pm.Fidelity, noise_limit: float = 200.0) -> om.Probl
             fidelity=fidelity,
             rpm_bounds=(3000.0, 7000.0),
             design_distributions={"beta": STATIONS, "chord_over_R": STATIONS},
+            control="values",
         ),
         promotes=["*"],
     )

@@ -223,7 +223,7 @@ _RESULTS = (
     Quantity("CQ", "", "torque coefficient Q / (rho n^2 D^5)"),
     Quantity("CP", "", "power coefficient 2 pi CQ"),
     Quantity(
-        "eta", "", "propulsive efficiency J CT / CP, 0 in hover, below 0 where a propeller brakes",
+        "eta", "", "propulsive efficiency J CT / CP, 0 in hover, below 0 of a brake",
         variable="efficiency",
     ),
     Quantity("figure_of_merit", "", "ideal power of hover T^1.5 / sqrt(2 rho A) over shaft power"),

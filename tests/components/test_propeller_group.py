@@ -143,8 +143,12 @@ def test_rpm_can_be_given_instead_of_the_thrust(problem):
 
 
 def test_control_points_start_on_the_propeller_and_lead_the_distribution(problem, propeller):
-    prob = problem(design_distributions={"beta": [0.15, 0.5, 1.0], "chord_over_R": [0.15, 1.0]})
-    prob.setup()
+    prob = problem(
+        design_distributions={"beta": [0.15, 0.5, 1.0], "chord_over_R": [0.15, 1.0]},
+        control="values",
+    )
+    with pytest.warns(UserWarning, match="slinear curves through control points change the"):
+        prob.setup()
     prob.run_model()
     r = propeller.r_over_R
     at = np.interp([0.15, 0.5, 1.0], r, propeller.beta_deg)
@@ -161,9 +165,12 @@ def test_control_points_start_on_the_propeller_and_lead_the_distribution(problem
 @pytest.mark.parametrize("method", ["akima", "cubic"])
 def test_other_splines_pass_through_the_control_points(problem, propeller, method):
     prob = problem(
-        design_distributions={"chord_over_R": [0.15, 0.4, 0.7, 1.0]}, spline_method=method
+        design_distributions={"chord_over_R": [0.15, 0.4, 0.7, 1.0]},
+        control="values",
+        spline_method=method,
     )
-    prob.setup()
+    with pytest.warns(UserWarning, match=f"{method} curves through control points change the"):
+        prob.setup()
     prob.set_val("chord_over_R_cp", [0.1, 0.2, 0.15, 0.05])
     prob.run_model()
     chord = prob.get_val("chord_over_R")[0]
@@ -205,6 +212,7 @@ def test_totals_against_differences(problem, assert_totals, point_inputs, trim, 
     prob = problem(
         trim=trim,
         design_distributions={"beta": [0.15, 0.5, 1.0], "thickness_over_chord": [0.15, 1.0]},
+        control="values",
         camber="design_lift_coefficient",
         broadband=True,
     )
@@ -235,6 +243,7 @@ def quieter(problem, driver):
     prob = problem(
         driver,
         design_distributions={"beta": [0.15, 0.5, 1.0], "chord_over_R": [0.15, 0.5, 1.0]},
+        control="values",
         rpm_bounds=(3000.0, 6000.0),
         viscous=False,  # quicker; it is the driver that is looked at
     )
