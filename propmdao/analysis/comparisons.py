@@ -11,7 +11,7 @@ from rich import box
 from rich.console import Console
 from rich.table import Table
 
-from propmdao.analysis.single_point import Analysis
+from propmdao.analysis.results import Analysis
 
 Row = tuple[str, str, str]
 Cell = float | str | None
