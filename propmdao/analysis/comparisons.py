@@ -10,7 +10,7 @@ from rich import box
 from rich.console import Console
 from rich.table import Table
 
-from propmdao.analysis.single_point import Analysis
+from propmdao.analysis.results import Analysis
 from propmdao.runtime.output_files import replacing
 
 Row = tuple[str, str, str]

@@ -29,7 +29,7 @@ from propmdao.records.quantities import ASKED
 
 if TYPE_CHECKING:
     from propmdao.aerodynamics.sections.polars.table import PolarTable
-    from propmdao.analysis.single_point import Analysis
+    from propmdao.analysis.results import Analysis
 
 DESCRIPTION = """\
 Thrust, torque and noise of a propeller in hover (speed 0) or axial flight.
