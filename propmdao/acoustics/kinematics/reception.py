@@ -110,8 +110,8 @@ def source_times(
     step : float, optional
         Largest step between source times [s]; that of the observer times by default.
     multiple : int
-        Number to a multiple of which the number of source times is rounded up, so that the blades
-        of a rotor run the same compiled code.
+        Divisor of the number of source times. A shorter step rounds this number up to a multiple,
+        so that the blades of a rotor run the same compiled code.
 
     Returns
     -------
