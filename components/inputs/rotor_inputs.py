@@ -97,7 +97,7 @@ def add_rotor_inputs(component: NodesComp) -> RotorConstants:
         shape = (fidelity.n_spanwise, *of_section)
         component.add_input("section_polars", shape=shape, tags=STATIC)
         add_point_inputs(component, ["sound_speed"])
-        grid = PolarTable(polars.alpha, polars.log_re, jnp.zeros((0, *of_section)))
+        grid = PolarTable(polars.alpha, polars.log_re, jnp.zeros((0, *of_section)), polars.mach)
     wake = wake_transport(options["wake"], fidelity.wake)
     return RotorConstants(wake, grid, float(options["stall_delay"]))
 

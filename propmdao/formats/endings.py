@@ -105,7 +105,7 @@ PROPELLER_WRITERS = {
 #: Readers of polars: functions of paths that return a `PolarTable`. The empty ending stands for any
 #: that is not in the table, for XFOIL lets its users name polars as they like.
 POLAR_READERS = {
-    ".c81": PolarReader("C81 file", "propmdao.formats.polars:read_c81"),
+    ".c81": PolarReader("C81 file", "propmdao.formats.c81:read_c81"),
     "": PolarReader(
         "polar of XFOIL or XFLR5, one for each Reynolds number",
         "propmdao.formats.polars:read_polars",

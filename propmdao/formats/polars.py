@@ -1,4 +1,4 @@
-"""Polars from files: XFOIL and XFLR5 text polars, C81 tables."""
+"""Polars from files: the text polars of XFOIL and XFLR5, and what a format's ending says."""
 
 from __future__ import annotations
 
@@ -8,7 +8,6 @@ from pathlib import Path
 
 import numpy as np
 
-from propmdao.aerodynamics.sections.polars.high_angle import FloatArray
 from propmdao.aerodynamics.sections.polars.table import PolarError, PolarTable
 from propmdao.aerodynamics.sections.polars.user_table import Polar, table_from_polars
 from propmdao.formats.endings import POLAR_READERS
@@ -16,8 +15,6 @@ from propmdao.runtime.input_files import read_text
 
 _COLUMNS = ("alpha", "cl", "cd", "cm")
 _NUMBER = r"([-+]?[\d.]+(?:[eE][-+]?\d+)?)"
-#: Width of a number and numbers per line after the first field of a C81 file.
-_WIDTH, _PER_LINE = 7, 9
 
 
 def load_polars(*paths: str | os.PathLike[str]) -> PolarTable:
@@ -135,82 +132,6 @@ def read_polars(*paths: str | os.PathLike[str]) -> PolarTable:
         If a file is wrong, as `read_polar` finds, or if a Reynolds number comes twice.
     """
     return table_from_polars([read_polar(path) for path in paths])
-
-
-def read_c81(path: str | os.PathLike[str]) -> PolarTable:
-    """Read a C81 file: lift, drag and moment over angle and Mach number.
-
-    Parameters
-    ----------
-    path : path
-        Fixed columns: a name of 30 characters and six counts of two characters (Mach numbers and
-        angles of lift, drag, moment), then per coefficient the Mach numbers and a row per angle
-        [deg], fields of 7 characters, ten a line.
-
-    Returns
-    -------
-    PolarTable
-        The table of one section at the file's lowest Mach number, which `section_coefficients`
-        corrects, and the same at all Reynolds numbers, which the format does not hold.
-
-    Raises
-    ------
-    PolarError
-        If the file cannot be read, ends early or holds something that is not a number; the message
-        begins with the file and names line and column.
-    """
-    lines = _lines(path)
-    counts = re.findall(r"..", lines[0][30:42]) if lines else []
-    if len(counts) != 6 or not all(re.fullmatch(r" ?0?[1-9]|[1-9]\d", count) for count in counts):
-        raise PolarError(f"{path}: line 1: columns 31-42 must hold six counts, two characters each")
-    start, tables = 1, []
-    for k, name in enumerate(("lift", "drag", "moment")):
-        n_mach, n_alpha = int(counts[2 * k]), int(counts[2 * k + 1])
-        per_row = max(-(-n_mach // _PER_LINE), 1)
-        stop = start + per_row * (n_alpha + 1)
-        if stop > len(lines):
-            raise PolarError(
-                f"{path}: the {name} table needs {n_alpha} angles up to line {stop}; the file "
-                f"ends at line {len(lines)}"
-            )
-        rows = [
-            _fields(path, lines, first, per_row, n_mach, leading=first > start)
-            for first in range(start, stop, per_row)
-        ]
-        tables.append((rows[0][0], np.array([[row[0], row[1]] for row in rows[1:]])))
-        start = stop
-    low = max(table[0, 0] for _, table in tables)
-    high = min(table[-1, 0] for _, table in tables)
-    angles = np.unique(np.concatenate([table[:, 0] for _, table in tables]))
-    angles = angles[(angles >= low) & (angles <= high)]
-    cl, cd, cm = (np.interp(angles, table[:, 0], table[:, 1]) for _, table in tables)
-    name, mach = lines[0][:30].strip(), float(tables[0][0])
-    try:
-        # The format has no Reynolds number; that of a single polar only has to be possible.
-        return table_from_polars([Polar(name, 1e6, mach, np.radians(angles), cl, cd, cm)])
-    except PolarError as error:
-        raise PolarError(f"{path}: {error}") from None
-
-
-def _fields(
-    path: str | os.PathLike[str],
-    lines: list[str],
-    first: int,
-    per_row: int,
-    count: int,
-    leading: bool,
-) -> FloatArray:
-    """Numbers of one row of a C81 file, which may go on over several lines."""
-    values = []
-    for number in range(first, first + per_row):
-        line, n_fields = lines[number], min(count - _PER_LINE * (number - first), _PER_LINE)
-        for field in range(0 if leading and number == first else 1, n_fields + 1):
-            text = line[_WIDTH * field : _WIDTH * (field + 1)]
-            where = (
-                f"{path}: line {number + 1}, columns {_WIDTH * field + 1}-{_WIDTH * (field + 1)}"
-            )
-            values.append(_number(text.strip(), where))
-    return np.array(values)
 
 
 def _lines(path: str | os.PathLike[str]) -> list[str]:

@@ -38,9 +38,12 @@ class SectionPolars:
         Natural logarithms of the Reynolds numbers and angles of attack [rad], both as `PolarTable`
         has them.
     values : (n_shapes, n_camber, n_thickness, 3, n_re, n_alpha) array
-        Coefficients cl, ln(cd), cm.
+        Coefficients cl, ln(cd), cm as `PolarTable` has them, with its axis of Mach numbers where
+        there is one.
     weights : (n_stations, n_shapes) array
         Share of each shape in each station of the propeller; rows sum to 1.
+    mach : (n_mach,) array, optional
+        Mach numbers as `PolarTable` has them.
     """
 
     camber: jax.Array
@@ -49,6 +52,7 @@ class SectionPolars:
     alpha: jax.Array
     values: jax.Array
     weights: jax.Array
+    mach: jax.Array | None = None
 
 
 @compiled
@@ -77,7 +81,8 @@ def section_tables(
     mix = jnp.einsum("ns,nc,nt->nsct", weights, by_camber, by_thickness)
     shape = polars.values.shape
     flat = mix.reshape(mix.shape[0], -1) @ polars.values.reshape(mix[0].size, -1)
-    return PolarTable(polars.alpha, polars.log_re, flat.reshape(-1, *shape[3:]))
+    values = flat.reshape(-1, *shape[3:])
+    return PolarTable(polars.alpha, polars.log_re, values, polars.mach)
 
 
 def blade_tables(polars: SectionPolars, blade: Blade, span: SpanInterpolation) -> PolarTable:

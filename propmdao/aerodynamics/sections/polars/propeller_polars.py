@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import functools
 import warnings
 from collections.abc import Mapping
@@ -26,9 +27,34 @@ from propmdao.aerodynamics.sections.polars.shipped import (
 )
 from propmdao.aerodynamics.sections.polars.sources import find_sources
 from propmdao.aerodynamics.sections.polars.table import PolarSubstituteWarning, PolarTable
+from propmdao.aerodynamics.sections.polars.user_table import ANY_REYNOLDS
 from propmdao.propeller.airfoils.library import find_airfoil
 from propmdao.propeller.description import Propeller
 from propmdao.records.models import Transition
+
+
+@dataclasses.dataclass(frozen=True)
+class _Values:
+    """Coefficients over (Mach number,) Reynolds number and angle, the last axes of `values`."""
+
+    log_re: FloatArray
+    values: FloatArray
+    mach: FloatArray | None = None
+
+    @classmethod
+    def of_table(cls, table: PolarTable) -> _Values:
+        mach = None if table.mach is None else np.asarray(table.mach)
+        return cls(np.asarray(table.log_re), np.asarray(table.values), mach)
+
+    def resampled(self, log_re: FloatArray, mach: FloatArray | None) -> FloatArray:
+        """Values at other nodes; what has no Mach numbers is the same at all."""
+        values = _resampled(self.log_re, self.values, log_re)
+        if mach is None:
+            return values
+        if self.mach is None:
+            return np.repeat(values[..., None, :, :], mach.size, axis=-3)
+        over_mach = _resampled(self.mach, np.moveaxis(values, -3, -2), mach)
+        return np.moveaxis(over_mach, -2, -3)
 
 
 def polars_for(
@@ -74,21 +100,26 @@ def polars_for(
         if source.substitute:
             warnings.warn(_substitute_message(name), PolarSubstituteWarning, stacklevel=2)
     user = {
-        source.shape: (np.asarray(source.table.log_re), np.asarray(source.table.values))
+        source.shape: _Values.of_table(source.table)
         for source in sources.values()
         if source.table is not None
     }
     weights = _shape_weights(propeller, [sources[name].shape for _, name in propeller.airfoils])
     tables = [
-        user.get(name) or (np.log(REYNOLDS), _family_values(name, transition.n_crit))
+        user.get(name) or _Values(np.log(REYNOLDS), _family_values(name, transition.n_crit))
         for name in weights
     ]
-    log_re = functools.reduce(_merged, [grid for grid, _ in tables])
-    resampled = [_resampled(grid, values, log_re) for grid, values in tables]
+    # A table without Reynolds numbers is the same at those of the others.
+    grids = [table.log_re for table in tables if not np.array_equal(table.log_re, ANY_REYNOLDS)]
+    log_re = functools.reduce(_merged, grids or [ANY_REYNOLDS])
+    machs = [table.mach for table in tables if table.mach is not None]
+    mach = functools.reduce(_merged, machs) if machs else None
+    resampled = [table.resampled(log_re, mach) for table in tables]
     camber, thickness = np.concatenate([-CAMBER[:0:-1], CAMBER]), THICKNESS
     if user.keys() == weights.keys():
         camber, thickness = np.array([-1.0, 1.0]), np.array([0.0, 1.0])
-    full = (camber.size, thickness.size, 3, log_re.size, ALPHA.size)
+    over_mach = () if mach is None else mach.shape
+    full = (camber.size, thickness.size, 3, *over_mach, log_re.size, ALPHA.size)
     return SectionPolars(
         camber=jnp.asarray(camber),
         thickness=jnp.asarray(thickness),
@@ -96,6 +127,7 @@ def polars_for(
         alpha=jnp.asarray(ALPHA),
         values=jnp.asarray(np.stack([np.broadcast_to(values, full) for values in resampled])),
         weights=jnp.asarray(np.stack(list(weights.values()), axis=1)),
+        mach=None if mach is None else jnp.asarray(mach),
     )
 
 
@@ -165,11 +197,11 @@ def _merged(grid: FloatArray, second: FloatArray) -> FloatArray:
     return nodes[np.concatenate([[True], np.diff(nodes) > 0.005])]
 
 
-def _resampled(log_re: FloatArray, values: FloatArray, target: FloatArray) -> FloatArray:
-    """Values at other Reynolds numbers, held at the ends; the axis before the last."""
-    if np.array_equal(log_re, target):
+def _resampled(nodes: FloatArray, values: FloatArray, target: FloatArray) -> FloatArray:
+    """Values at other nodes, held at the ends; the axis before the last."""
+    if np.array_equal(nodes, target):
         return values
-    inside = jnp.clip(jnp.asarray(target), log_re[0], log_re[-1])
-    operator = np.asarray(dense(*clamped_stencil(jnp.asarray(log_re), inside), log_re.size))
+    inside = jnp.clip(jnp.asarray(target), nodes[0], nodes[-1])
+    operator = np.asarray(dense(*clamped_stencil(jnp.asarray(nodes), inside), nodes.size))
     resampled: FloatArray = np.einsum("wr,...ra->...wa", operator, values)
     return resampled

@@ -37,28 +37,34 @@ class PolarTable:
         Angles of attack from -pi to pi, both included and equal in value [rad].
     log_re : (n_re,) array
         Natural logarithms of the Reynolds numbers, rising, at least two.
-    values : (n_sections, 3, n_re, n_alpha) array
+    values : (n_sections, 3, n_re, n_alpha) or (n_sections, 3, n_mach, n_re, n_alpha) array
         Lift coefficient, natural logarithm of the drag coefficient (drag stays positive whatever
-        is blended or interpolated), moment coefficient about the quarter chord (nose up).
+        is blended or interpolated), moment coefficient about the quarter chord (nose up). Lift and
+        moment are over the factor of `prandtl_glauert` at the Mach number where they were found,
+        1 in incompressible flow: times the factor at the same number they are as found.
+    mach : (n_mach,) array, optional
+        Mach numbers of `values`, rising, at least two. None for polars that are the same but for
+        that factor at all Mach numbers.
     """
 
     alpha: jax.Array
     log_re: jax.Array
     values: jax.Array
+    mach: jax.Array | None = None
 
     @property
     def cl(self) -> jax.Array:
-        """Lift coefficients, (n_sections, n_re, n_alpha)."""
+        """Lift coefficients as in `values`, without its second axis."""
         return self.values[:, 0]
 
     @property
     def cd(self) -> jax.Array:
-        """Drag coefficients, (n_sections, n_re, n_alpha)."""
+        """Drag coefficients, shaped as `values` without its second axis."""
         return jnp.exp(self.values[:, 1])
 
     @property
     def cm(self) -> jax.Array:
-        """Moment coefficients about the quarter chord, (n_sections, n_re, n_alpha)."""
+        """Moment coefficients about the quarter chord as in `values`, without its second axis."""
         return self.values[:, 2]
 
 
@@ -71,7 +77,8 @@ class SectionCurves:
     alpha : (n_alpha,) array
         Angles of attack, as `PolarTable` has them [rad].
     values : (n_sections, 3, n_alpha) array
-        Lift coefficient, natural logarithm of the drag coefficient, moment coefficient.
+        Lift coefficient, natural logarithm of the drag coefficient, moment coefficient, as
+        `PolarTable` has them.
     mach : (n_sections,) array or number
         Mach numbers.
     """
@@ -94,7 +101,7 @@ def section_curves(
         Reynolds number on the chord, positive; held at the ends of the table (`warn_outside`
         tells the user).
     mach : (n,) array or number
-        Mach number.
+        Mach number; held at the ends of a table that has Mach numbers.
 
     Returns
     -------
@@ -103,8 +110,14 @@ def section_curves(
     """
     index, weight = clamped_stencil(table.log_re, jnp.log(re))
     row = jnp.arange(table.values.shape[0])[:, None]
-    near = table.values[row, :, index]
-    return SectionCurves(table.alpha, jnp.einsum("nrca,nr->nca", near, weight), mach)
+    if table.mach is None:
+        near = table.values[row, :, index]
+        return SectionCurves(table.alpha, jnp.einsum("nrca,nr->nca", near, weight), mach)
+    values = jnp.einsum("nrcma,nr->ncma", table.values[row, :, :, index], weight)
+    machs = jnp.broadcast_to(jnp.asarray(mach, float), re.shape)
+    index, weight = clamped_stencil(table.mach, machs)
+    near = values[row, :, index]
+    return SectionCurves(table.alpha, jnp.einsum("nmca,nm->nca", near, weight), mach)
 
 
 def curve_coefficients(
@@ -147,7 +160,8 @@ def section_coefficients(
     re : (n,) array
         Reynolds number of each section on its chord; held at the ends of the table.
     mach : (n,) array or number
-        Mach number of each section; it raises lift and moment by `prandtl_glauert` and leaves drag.
+        Mach number of each section; it raises lift and moment by `prandtl_glauert`, from a table
+        without Mach numbers by that alone, and leaves its drag.
 
     Returns
     -------
@@ -193,11 +207,22 @@ def warn_outside(
             stacklevel=2,
         )
     machs = np.broadcast_to(np.asarray(mach, dtype=float), radii.shape)
-    if (machs > MACH_LIMIT).any():
-        worst = int(machs.argmax())
+    limit = np.full(radii.shape, MACH_LIMIT)
+    if table.mach is not None:
+        # Sections whose polars do not vary with Mach number share the table of others.
+        vary = np.ptp(np.asarray(table.values), axis=2).max(axis=(1, 2, 3)) > 1e-9
+        limit = np.where(vary, float(table.mach[-1]), MACH_LIMIT)
+    over = machs - limit
+    if (over > 1e-9).any():
+        worst = int(over.argmax())
+        what = (
+            "the polars are held at the end of their range there"
+            if table.mach is not None and limit[worst] == float(table.mach[-1])
+            else "the polars know no shocks: their lift correction is held there, drag has none"
+        )
         warnings.warn(
-            f"Mach number {machs[worst]:.3g} at r/R {radii[worst]:.3g} is above {MACH_LIMIT:g}; "
-            "the polars know no shocks: their lift correction is held there, drag has none",
+            f"Mach number {machs[worst]:.3g} at r/R {radii[worst]:.3g} is above "
+            f"{limit[worst]:.3g}; {what}",
             PolarRangeWarning,
             stacklevel=2,
         )
