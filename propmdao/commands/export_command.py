@@ -17,6 +17,7 @@ from propmdao.commands.options import (
 from propmdao.commands.output_files import require_output, require_output_folder
 from propmdao.commands.warning_lines import warning_lines
 from propmdao.formats.endings import PROPELLER_WRITERS
+from propmdao.runtime.terminal import print_line
 
 if TYPE_CHECKING:
     from propmdao.propeller.description import Propeller
@@ -103,7 +104,7 @@ def _export(options: argparse.Namespace) -> None:
     propeller = Change(options.twist_offset_deg).applied_to(propeller)
     section = [options.section] if writer.of_section else []
     n_items = writer(path, propeller, *section)
-    print(f"{path}: {propeller.name}, {n_items} {writer.items}")
+    print_line(f"{path}: {propeller.name}, {n_items} {writer.items}")
 
 
 def _write_case(options: argparse.Namespace, propeller: Propeller) -> None:
@@ -116,7 +117,7 @@ def _write_case(options: argparse.Namespace, propeller: Propeller) -> None:
     with warning_lines("export"):
         analysis = analyze(propeller, **asked_of(options), listening=listening)
     write_case(analysis, options.to)
-    print(
+    print_line(
         f"{options.to}: PSU-WOPWOP case of {propeller.name} at {analysis.rpm:.1f} rpm,"
         f" {analysis.point.speed:g} m/s, thrust {float(analysis.loads.thrust):.4g} N,"
         f" {len(listening.observers)} observers"
