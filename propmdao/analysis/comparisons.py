@@ -7,11 +7,11 @@ import os
 from collections.abc import Mapping, Sequence
 
 from rich import box
-from rich.console import Console
 from rich.table import Table
 
 from propmdao.analysis.results import Analysis
 from propmdao.runtime.output_files import replacing
+from propmdao.runtime.terminal import plain_console
 
 Row = tuple[str, str, str]
 Cell = float | str | None
@@ -90,7 +90,7 @@ def print_comparison(
                 *(_format(cell, form) for cell in rest),
             )
             writer.writerow([label, before, after, change, *rest])
-    Console(highlight=False).print(table)
+    plain_console().print(table, highlight=False)
 
 
 def side_by_side(rows: Sequence[Row], columns: Mapping[str, Mapping[str, Cell]]) -> Rows:

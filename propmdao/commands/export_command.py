@@ -17,6 +17,7 @@ from propmdao.commands.options import (
 from propmdao.commands.output_files import require_output, require_output_folder
 from propmdao.commands.warning_lines import warning_lines
 from propmdao.formats.endings import PROPELLER_WRITERS, STL_UNITS
+from propmdao.runtime.terminal import print_line
 
 if TYPE_CHECKING:
     from propmdao.propeller.description import Propeller
@@ -110,7 +111,7 @@ def _export(options: argparse.Namespace) -> None:
     third = [options.section] if writer.of_section else [unit] if writer.in_units else []
     n_items = writer(path, propeller, *third)
     lengths = f", {STL_UNITS[unit][0]}" if writer.in_units else ""
-    print(f"{path}: {propeller.name}, {n_items} {writer.items}{lengths}")
+    print_line(f"{path}: {propeller.name}, {n_items} {writer.items}{lengths}")
 
 
 def _write_case(options: argparse.Namespace, propeller: Propeller) -> None:
@@ -123,7 +124,7 @@ def _write_case(options: argparse.Namespace, propeller: Propeller) -> None:
     with warning_lines("export"):
         analysis = analyze(propeller, **asked_of(options), listening=listening)
     write_case(analysis, options.to)
-    print(
+    print_line(
         f"{options.to}: PSU-WOPWOP case of {propeller.name} at {analysis.rpm:.1f} rpm,"
         f" {analysis.point.speed:g} m/s, thrust {float(analysis.loads.thrust):.4g} N,"
         f" {len(listening.observers)} observers"

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import argparse
 import contextlib
+import io
 import os
 import sys
 from collections.abc import Sequence
@@ -21,13 +22,14 @@ from propmdao.commands.json_output import print_json
 from propmdao.commands.sweep_command import add_sweep
 from propmdao.commands.wopwop_command import add_wopwop
 from propmdao.runtime.output_files import reason_of
+from propmdao.runtime.terminal import print_line, printable
 
 
 class _Parser(argparse.ArgumentParser):
     """Parser whose errors are one line, without the usage."""
 
     def error(self, message: str) -> NoReturn:
-        self.exit(2, f"{self.prog}: error: {message}\n")
+        self.exit(2, printable(f"{self.prog}: error: {message}") + "\n")
 
     def _print_message(self, message: str, file: Any = None) -> None:
         """Print help; argparse itself says nothing when it cannot be written."""
@@ -55,6 +57,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
     name = parser.prog
     if sys.stdout is None:  # closed by who started the program
         return _refuse(name, "standard output is closed")
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, io.TextIOWrapper):  # a name may hold what its encoding does not
+            stream.reconfigure(errors="backslashreplace")
     try:
         try:
             options = parser.parse_args(arguments)
@@ -78,7 +83,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 def _refuse(name: str, reason: str) -> int:
     """Say in one line on stderr what is wrong; the exit status."""
-    print(f"{name}: error: {reason}", file=sys.stderr)
+    with contextlib.suppress(OSError):  # then there is nobody to tell
+        print_line(f"{name}: error: {reason}", error=True)
     return 2
 
 

@@ -11,6 +11,7 @@ from rich.table import Table
 
 from propmdao.propeller.description import Propeller
 from propmdao.records.listening import Surroundings
+from propmdao.runtime.terminal import plain_console, print_line, printable
 
 # What the numbers leave out stands below them, where it is read.
 INVISCID = "Inviscid lattice: no profile drag, so torque and power are low and eta is high."
@@ -32,11 +33,14 @@ def print_catalog(propellers: Iterable[Propeller]) -> None:
     table.add_column("blades", justify="right")
     table.add_column("airfoils, hub to tip")
     for propeller in propellers:
-        airfoils = ", ".join(name for _, name in propeller.airfoils)
+        airfoils = printable(", ".join(name for _, name in propeller.airfoils))
         table.add_row(
-            propeller.name, f"{propeller.diameter:.4g}", str(propeller.n_blades), airfoils
+            printable(propeller.name),
+            f"{propeller.diameter:.4g}",
+            str(propeller.n_blades),
+            airfoils,
         )
-    console = Console()
+    console = plain_console()
     console.print(table)
     console.print("Where the numbers come from, and what is assumed: propmdao list --json")
 
@@ -49,7 +53,7 @@ def print_analyses(analyses: Sequence[dict[str, Any]]) -> None:
     analyses : sequence of dict
         Results with the keys of ``propmdao analyze --json``.
     """
-    console = Console()
+    console = plain_console()
     first = analyses[0]
     _print_propeller(
         console, first, f"speed {first['speed']:.4g} m/s, air {first['rho']:.4g} kg/m3"
@@ -77,7 +81,7 @@ def print_flyover(result: dict[str, Any]) -> None:
     result : dict
         With the keys of ``propmdao flyover --json``.
     """
-    console = Console()
+    console = plain_console()
     flight, history = result["flight"], result["history"]
     _print_propeller(
         console,
@@ -95,7 +99,7 @@ def print_flyover(result: dict[str, Any]) -> None:
         table.add_row(part, *shown, "" if epnl is None else f"{epnl:.1f}")
     console.print(table)
     if result["epnl_failure"]:
-        console.print(f"No EPNL: {result['epnl_failure']}.", highlight=False)
+        console.print(printable(f"No EPNL: {result['epnl_failure']}."), highlight=False)
     loudest = max(history, key=lambda step: float(step["total_dba"]))
     trip = result["model"]["noise"]["broadband"]["trip"]
     console.print(
@@ -111,8 +115,10 @@ def _print_propeller(console: Console, result: dict[str, Any], condition: str) -
     """Print what was analysed, and at what condition."""
     propeller, change = result["propeller"], result["change"]
     console.print(
-        f"{propeller['name']}: {propeller['n_blades']} blades, diameter"
-        f" {propeller['diameter']:.4g} m, {condition}",
+        printable(
+            f"{propeller['name']}: {propeller['n_blades']} blades, diameter"
+            f" {propeller['diameter']:.4g} m, {condition}"
+        ),
         highlight=False,
     )
     # A calibrated blade is not the published one.
@@ -134,8 +140,10 @@ def print_doubts(results: Sequence[dict[str, Any]]) -> None:
     for result in results:
         if not result["converged"]:
             console.print(
-                f"NOT CONVERGED at {result['rpm']:.1f} rpm, do not use these numbers: "
-                f"{result['failure']}."
+                printable(
+                    f"NOT CONVERGED at {result['rpm']:.1f} rpm, do not use these numbers: "
+                    f"{result['failure']}."
+                )
             )
     if not results[0]["model"]["loads"]["viscous"]:
         console.print(INVISCID)
@@ -152,12 +160,12 @@ def print_files(result: dict[str, Any]) -> None:
     """
     if "sound" in result:
         sound = result["sound"]
-        print(
+        print_line(
             f"Sound: {sound['path']}, {sound['duration']:.3f} s, full scale"
             f" {sound['full_scale']:g} Pa, peak {sound['peak']:.4g} Pa"
         )
     if "figures" in result:
-        print("Figures:", *result["figures"])
+        print_line(" ".join(["Figures:", *result["figures"]]))
 
 
 def _operating_points(analyses: Sequence[dict[str, Any]]) -> Table:

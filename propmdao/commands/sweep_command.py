@@ -21,6 +21,7 @@ from propmdao.commands.options import (
 )
 from propmdao.commands.warning_lines import warning_lines
 from propmdao.records.quantities import VARIABLES, Range
+from propmdao.runtime.terminal import print_line
 
 SWEEP_DESCRIPTION = """\
 A propeller at many points into a table, a row per point: a map of thrust, torque and noise over
@@ -126,9 +127,9 @@ def _sweep(options: argparse.Namespace) -> None:
     counts = f"points: {len(points)}, {n_new} new, {len(failures)} failed"
     if failures and len(failures) == len(points):
         raise ValueError(f"{counts}, the first with: {failures[0]}")
-    print(f"{counts}; {options.out}")
+    print_line(f"{counts}; {options.out}")
     for reason in list(dict.fromkeys(failures))[:3]:
-        print(f"  failed: {reason}")
+        print_line(f"  failed: {reason}")
 
 
 def _points(options: argparse.Namespace) -> list[dict[str, float]]:

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import contextlib
-import sys
 import warnings
 from collections.abc import Iterator
+
+from propmdao.runtime.terminal import print_line
 
 
 @contextlib.contextmanager
@@ -23,4 +24,4 @@ def warning_lines(command: str) -> Iterator[None]:
             yield
         finally:
             for message in dict.fromkeys(str(warning.message) for warning in caught):
-                print(f"propmdao {command}: warning: {message}", file=sys.stderr)
+                print_line(f"propmdao {command}: warning: {message}", error=True)

@@ -173,8 +173,9 @@ def write_pressure_csv(path: Path, results: Sequence[CaseResult]) -> None:
 
 def _print(groups: Sequence[dict[str, Any]]) -> None:
     from rich import box
-    from rich.console import Console
     from rich.table import Table
+
+    from propmdao.runtime.terminal import plain_console, printable
 
     def table(*headings: str) -> Table:
         made = Table(box=box.SIMPLE, pad_edge=False, collapse_padding=True)
@@ -182,14 +183,15 @@ def _print(groups: Sequence[dict[str, Any]]) -> None:
             made.add_column(heading, justify="right", overflow="fold")
         return made
 
-    console = Console()
+    console = plain_console()
     for group in groups:
         observers = group["observers"]
         console.print(
-            f"{group['case']}: {group['title'] or 'observers'}, {group['n_times']} times in"
-            f" {group['duration']:.4g} s, bins of {group['bin_width_hz']:.4g} Hz",
+            printable(
+                f"{group['case']}: {group['title'] or 'observers'}, {group['n_times']} times in"
+                f" {group['duration']:.4g} s, bins of {group['bin_width_hz']:.4g} Hz"
+            ),
             highlight=False,
-            markup=False,
         )
         overall = table(
             "observer", "x\nm", "y\nm", "z\nm", "thickness\ndB", "loading\ndB", "OASPL\ndB",

@@ -17,6 +17,7 @@ from propmdao.propeller.airfoils.airfoil import chord_interpolation
 from propmdao.propeller.description import Propeller
 from propmdao.records.fidelity import Fidelity
 from propmdao.runtime.output_files import replacing
+from propmdao.runtime.terminal import printable
 
 _SECTION_POINTS = 161
 
@@ -128,7 +129,7 @@ def export_section(path: str | Path, propeller: Propeller, r_over_R: float) -> i
     camber, thickness = section_shape(Blade.from_propeller(propeller), span, operator)
     z = np.asarray(camber[:, 0]) + 0.5 * np.sign(np.round(angle, 12)) * np.asarray(thickness[:, 0])
     x = 0.5 * (1.0 - np.cos(angle))
-    lines = [f"{propeller.name} at r/R {r_over_R:g}"]
+    lines = [printable(f"{propeller.name} at r/R {r_over_R:g}")]
     lines += [f"{a:.7f} {b:.7f}" for a, b in zip(x, z + 0.0, strict=True)]
     with replacing(path) as file:
         file.write_text("\n".join(lines) + "\n", encoding="utf-8")

@@ -151,7 +151,7 @@ def test_bad_cases_are_one_line(
 def test_an_output_that_cannot_be_written(folder: Path, capsys: pytest.CaptureFixture[str]):
     missing = folder / "nowhere" / "p.csv"
     assert "there is no folder" in refused(capsys, folder, "--out", missing)
-    assert "directory" in refused(capsys, folder, "--out", folder)
+    assert "it is a folder" in refused(capsys, folder, "--out", folder)
 
 
 def test_help_explains_the_options(capsys: pytest.CaptureFixture[str]):
