@@ -107,7 +107,7 @@ def test_a_propeller_that_grows_into_an_observer_is_a_failed_analysis(problem):
 
 def test_bounds_that_are_given_stay(problem, propeller):
     values = {"diameter": 2.0 * propeller.diameter, "thrust_required": 500.0}
-    prob = problem(values, rpm_bounds=(1000.0, 4000.0))
+    prob = problem(values, rpm_bounds=(1000.0, 4000.0), viscous=False)
     with pytest.raises(om.AnalysisError, match=r"at 1000 rpm, .* N at 4000 rpm"):
         prob.run_model()
 
