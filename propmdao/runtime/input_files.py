@@ -121,6 +121,22 @@ def clipped(text: str) -> str:
     return shown if len(shown) <= _LONGEST_QUOTE else f"{shown[: _LONGEST_QUOTE - 3]}..."
 
 
+def is_number(text: str) -> bool:
+    """Tell a number from any other word of a file.
+
+    Parameters
+    ----------
+    text : str
+        Word of the file.
+
+    Returns
+    -------
+    bool
+        True for a number, one that is not finite, too.
+    """
+    return _NUMBER.fullmatch(text) is not None
+
+
 def finite_number(
     text: str, error: type[ValueError], where: str, largest: float = LARGEST
 ) -> float:
@@ -148,7 +164,7 @@ def finite_number(
         If the word is no number, or one that is not finite or beyond the largest; an exception of
         the type `error`.
     """
-    if _NUMBER.fullmatch(text.strip()) is None:
+    if not is_number(text.strip()):
         raise error(f"{where}: '{clipped(text)}' is no number")
     value = float(text)
     if not math.isfinite(value):
@@ -180,7 +196,7 @@ def fields_of(line: str) -> list[str] | None:
         fields = [word.replace(",", ".") for word in words]
     else:
         fields = " ".join(words).replace(",", " ").split()
-    return fields if fields and all(_NUMBER.fullmatch(field) for field in fields) else None
+    return fields if fields and all(map(is_number, fields)) else None
 
 
 def table_rows(
@@ -229,6 +245,6 @@ def table_rows(
 def _holds_a_row(line: str, n_columns: int) -> bool:
     """Tell a row with a word or a number too many, or a damaged number, from a title."""
     words = line.replace(",", " ").replace(";", " ").split()
-    numbers = [_NUMBER.fullmatch(word) is not None for word in words]
+    numbers = [is_number(word) for word in words]
     whole = any(all(numbers[k : k + n_columns]) for k in range(len(words) - n_columns + 1))
     return whole or (len(words) == n_columns and sum(numbers) == n_columns - 1)

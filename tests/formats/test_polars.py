@@ -105,7 +105,65 @@ def test_polars_are_sorted_by_reynolds_number_and_kept_there(tmp_path: Path) -> 
         read_polars(tmp_path / "b.txt", tmp_path / "b.txt")
 
 
+NAMES = "alpha CL CD CDp Cm Top_Xtr Bot_Xtr Cpmin Chinge XCp a b".split()
+HEADER = XFLR5[: XFLR5.index("  alpha")]
+TOOLS = """Xfoil polar. Reynolds number fixed. Mach  number fixed
+Polar key,xf-flat-il-60000
+Airfoil,FLAT 6
+Reynolds number,60000
+Ncrit,7
+Mach,0
+Max Cl/Cd alpha,5.25
+Url,http://example.org
+
+"""
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        TOOLS + "".join(",".join(line.split()) + "\n" for line in [" ".join(NAMES), *rows()]),
+        HEADER + "".join(",".join(line.split()) + ",\n" for line in [" ".join(NAMES), *rows()]),
+        HEADER
+        + "".join(
+            ";".join(line.split()).replace(".", ",") + "\n" for line in [" ".join(NAMES), *rows()]
+        ),
+        "\ufeff" + XFLR5 + "".join(rows()),
+        HEADER + " ".join(NAMES) + "  " + "".join(rows()),  # the first row behind the names
+        XFLR5.removesuffix("\n") + "".join(rows()),  # or behind the line under them
+    ],
+)
+def test_dialects_are_the_same_polar(text: str, tmp_path: Path) -> None:
+    plain = read_polar(written(tmp_path, XFLR5 + "".join(rows()), "plain.txt"))
+    path = tmp_path / "other.txt"
+    path.write_text(text, encoding="utf-8")
+    polar = read_polar(path)
+    assert (polar.name, polar.re, polar.mach, polar.n_crit) == ("FLAT 6", 6e4, 0.0, 7.0)
+    for name in ("alpha", "cl", "cd", "cm"):
+        np.testing.assert_array_equal(getattr(polar, name), getattr(plain, name))
+
+
+def test_a_symmetric_section_goes_on_below(tmp_path: Path) -> None:
+    half = "".join(f"{a:g} {0.1 * a:g} {drag(a):g} 0 {-0.002 * a:g}\n" for a in range(11))
+    polar = read_polar(written(tmp_path, XFLR5 + half))
+    np.testing.assert_allclose(np.degrees(polar.alpha), np.arange(-10, 11), atol=1e-12)
+    np.testing.assert_allclose(polar.cl, 0.1 * np.arange(-10, 11), atol=1e-12)
+    np.testing.assert_allclose(polar.cd, drag(np.arange(-10, 11)), atol=1e-12)
+    np.testing.assert_allclose(polar.cm, -0.002 * np.arange(-10, 11), atol=1e-12)
+
+
+def test_a_polar_at_a_mach_number_is_found_again_there(tmp_path: Path) -> None:
+    text = XFLR5.replace("Mach =   0.000", "Mach =   0.500") + "".join(rows())
+    table = read_polars(written(tmp_path, text))
+    degrees = np.array([-4.0, 0.0, 6.0])
+    strips = dataclasses.replace(table, values=jnp.repeat(table.values, 3, axis=0))
+    cl, cd, _ = section_coefficients(strips, jnp.radians(degrees), jnp.full(3, 6e4), 0.5)
+    np.testing.assert_allclose(cl, lift(degrees), atol=1e-9)
+    np.testing.assert_allclose(cd, drag(degrees), rtol=1e-9)
+
+
 BODY = "".join(rows())
+FIXED = "1 1 Reynolds number fixed          Mach number fixed"
 WRONG = {
     "no columns": (XFLR5.replace("alpha", "angle") + BODY, "no line names the columns alpha, CL"),
     "no drag": (XFLR5.replace(" CD ", " XX ") + BODY, "line 10: missing column 'cd'; found: alpha"),
@@ -134,6 +192,38 @@ WRONG = {
         "cd must be positive; it is 0",
     ),
     "Re in millions": (XFLR5.replace("0.060 e 6", "0.060") + BODY, "at least 1000; it is 0.06"),
+    "type 2": (
+        XFLR5.replace(FIXED, "2 2 Reynolds number ~ 1/sqrt(CL)   Mach number ~ 1/sqrt(CL)") + BODY,
+        r"line 5: 'Reynolds number ~ 1/sqrt\(CL\)': Reynolds or Mach number varies with lift",
+    ),
+    "type 3": (
+        XFLR5.replace(FIXED, "3 1 Reynolds number ~ 1/CL   Mach number fixed") + BODY,
+        "line 5: 'Reynolds number ~ 1/CL': Reynolds or Mach number varies with lift",
+    ),
+    "type 4": (
+        XFLR5.replace(FIXED, "4 1 Reynolds number range") + BODY,
+        "line 5: a polar of type 4",
+    ),
+    "two rows in a line": (
+        XFLR5 + BODY.replace("\n", "", 1),
+        "line 12: 24 values, too many for its columns",
+    ),
+    "column twice": (XFLR5.replace("CDp", " CD") + BODY, "line 10: more than one column 'cd'"),
+    "Re of 999 digits": (
+        XFLR5.replace("0.060 e 6", "0.060 e 999") + BODY,
+        "line 8: Re: '0.060e999' is not finite",
+    ),
+    "Re no number": (XFLR5.replace("0.060 e 6", "lots") + BODY, "line 8: Re: 'lots' is no number"),
+    "Re too large": (
+        XFLR5.replace("0.060 e 6", "0.060 e 20") + BODY,
+        "must be at most 1e.11; it is",
+    ),
+    "1e308": (XFLR5 + BODY.replace("0.4000", "1e308"), "line 19, column 'cl': '1e308' is out of"),
+    "first row of inf": (
+        XFLR5 + "inf " * 12 + "\n" + BODY,
+        "line 12, column 'alpha': 'inf' is not",
+    ),
+    "far angle": (XFLR5 + BODY + "1e6 0 0.1 0 0\n", "alpha must be within -180..180 deg; .* 1e.06"),
     "Mach": (XFLR5.replace("Mach =   0.000", "Mach =   0.800") + BODY, "within 0..0.7.*it is 0.8"),
 }
 

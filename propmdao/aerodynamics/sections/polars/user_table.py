@@ -92,6 +92,11 @@ class Polar:
             values = getattr(self, name)
             if values.shape != degrees.shape or not np.isfinite(values).all():
                 raise PolarError(f"{name} must be {degrees.size} finite numbers, one per angle")
+        if np.abs(degrees).max(initial=0.0) > 180.0 + 1e-6:
+            raise PolarError(
+                f"alpha must be within -180..180 deg; there is "
+                f"{degrees[np.abs(degrees).argmax()]:g}"
+            )
         if degrees.size < 5:
             raise PolarError(f"a polar needs at least 5 angles; it has {degrees.size}")
         steps = np.diff(degrees)
