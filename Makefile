@@ -24,7 +24,7 @@ help:
 install: $(VENV)/installed
 
 study: $(VENV)/installed
-	$(BIN)/python studies/low_noise_design.py
+	$(BIN)/python studies/design/low_noise_design.py
 
 test: $(VENV)/dev
 	$(BIN)/python -m pytest -m "not slow" -n 2

@@ -17,7 +17,7 @@ from pathlib import Path
 from propmdao.analysis.comparisons import Rows, side_by_side
 
 ROOT = Path(__file__).parents[1]
-sys.path.insert(0, str(ROOT / "studies"))
+sys.path.insert(0, str(ROOT / "studies" / "design"))
 import gradient_design  # noqa: E402
 import smooth_objectives  # noqa: E402
 

@@ -27,7 +27,7 @@ from propmdao.analysis.comparisons import Rows, markdown
 from propmdao.analysis.wind_tunnel import Points, calibrated_twist_deg, computed
 
 HERE = Path(__file__).parent
-sys.path.insert(0, str(HERE.parent / "studies"))
+sys.path.insert(0, str(HERE.parent / "studies" / "validation"))
 import aerodynamic_sensitivity  # noqa: E402
 import aerodynamic_validation  # noqa: E402
 import gradient_tables  # noqa: E402

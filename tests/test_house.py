@@ -105,7 +105,7 @@ def test_no_circle_of_imports_between_the_folders_of_a_room(modules):
 def test_folders_have_at_most_a_dozen_modules(modules):
     count: dict[str, int] = {}
     for name in modules:
-        if name not in ("propmdao", "propmdao.components") and not name.startswith("studies"):
+        if name not in ("propmdao", "propmdao.components"):
             folder = name.rpartition(".")[0]
             count[folder] = count.get(folder, 0) + 1
     assert {folder: n for folder, n in count.items() if n > MOST_MODULES} == {}

@@ -18,7 +18,7 @@ class WakeLaw:
     """Speed of the wake's sheets relative to the free stream, in induced velocities at the disk.
 
     `propmdao.aerodynamics.wakes.helical` has the physics. The defaults are those at which sheets in
-    hover move as they themselves and the blades induce (``studies/wake_transport.py``).
+    hover move as they themselves and the blades induce (``studies/validation/wake_transport.py``).
 
     Attributes
     ----------

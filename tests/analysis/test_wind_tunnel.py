@@ -155,7 +155,7 @@ def test_calibration_that_cannot_be_is_refused():
 
 
 def test_measurements_that_ship_are_complete(checkout):
-    files = sorted((checkout / "studies" / "measurements").glob("uiuc_*.toml"))
+    files = sorted((checkout / "studies" / "validation" / "measurements").glob("uiuc_*.toml"))
     assert len(files) == 3
     for path in files:
         tunnel = read_wind_tunnel(path)

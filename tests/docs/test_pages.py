@@ -2,7 +2,9 @@
 
 import importlib.util
 import re
+import runpy
 import shlex
+import subprocess
 from pathlib import Path
 
 import pytest
@@ -25,7 +27,9 @@ def commands() -> list[list[str]]:
     return [words for line in lines if (words := shlex.split(line, comments=True))]
 
 
-PROPMDAO = [words[1:] for words in commands() if words[0] == "propmdao"]
+STUDIES = [words[1:] for words in commands() if words[0] == "python"]
+MAKE = [words[1:] for words in commands() if words[0] == "make"]
+PROPMDAO = [words[1:] for words in commands() if words[0].endswith("propmdao")]
 CODE = [(page, k, code) for page in PAGES for k, code in enumerate(blocks(page, "python"))]
 
 
@@ -50,6 +54,28 @@ def test_command_of_the_readme_runs(
     assert "error" not in captured.err
 
 
+@pytest.mark.parametrize("words", STUDIES, ids=" ".join)
+def test_study_of_the_readme_starts(
+    words: list[str], checkout: Path, monkeypatch: pytest.MonkeyPatch, capsys
+) -> None:
+    """What a study does is tested in tests/studies; here, that this line would start it."""
+    script = checkout / words[0]
+    if script.name == "mission.py":
+        pytest.importorskip("dymos")
+    monkeypatch.syspath_prepend(script.parent)
+    monkeypatch.setattr("sys.argv", [str(script), "--help"])
+    with pytest.raises(SystemExit) as end:
+        runpy.run_path(str(script), run_name="__main__")
+    assert end.value.code == 0
+    known = capsys.readouterr().out
+    assert all(option in known for option in words[1:] if option.startswith("--"))
+
+
+@pytest.mark.parametrize("words", MAKE, ids=" ".join)
+def test_target_of_the_readme_exists(words: list[str], checkout: Path) -> None:
+    subprocess.run(["make", "--dry-run", *words], cwd=checkout, check=True, capture_output=True)
+
+
 @pytest.mark.parametrize(("page", "k", "code"), CODE, ids=[f"{p} {k}" for p, k, _ in CODE])
 def test_code_block_of_a_page_runs(page: str, k: int, code: str) -> None:
     exec(compile(code, f"{page}, block {k + 1}", "exec"), {"__name__": "block"})
@@ -64,6 +90,12 @@ def test_all_blocks_are_run_or_known(checkout: Path) -> None:
             page = str(path.relative_to(checkout))
             assert page in (*PAGES, "docs/plugging_in.md"), page
     assert len(PROPMDAO) > 8
+    programs = {words[0] for words in commands()}
+    assert programs <= {"propmdao", ".venv/bin/propmdao", "python", "make"}
+    every = (checkout / "studies").glob("*/*.py")
+    scripts = {path for path in every if "__main__" in path.read_text(encoding="utf-8")}
+    shown = {checkout / words[0] for words in STUDIES}
+    assert shown | {checkout / "studies/design/low_noise_design.py"} == scripts  # make study
 
 
 def test_the_nomenclature_is_the_table_of_quantities(checkout: Path) -> None:

@@ -16,16 +16,17 @@ from propmdao.records.fidelity import Fidelity
 @pytest.fixture(scope="module")
 def import_study(checkout: Path) -> Iterator[Callable[[str], ModuleType]]:
     """Import a script anew; those it builds on lie beside it, once for a file of tests."""
-    folder = checkout / "studies"
+    scripts = list((checkout / "studies").glob("*/*.py"))
     with pytest.MonkeyPatch.context() as patch:
-        patch.syspath_prepend(folder)
+        for folder in {script.parent for script in scripts}:
+            patch.syspath_prepend(folder)
 
         def anew(name: str) -> ModuleType:
             sys.modules.pop(name, None)
             return importlib.import_module(name)
 
         yield anew
-        for script in folder.glob("*.py"):
+        for script in scripts:
             sys.modules.pop(script.stem, None)
 
 

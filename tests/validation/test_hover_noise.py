@@ -17,7 +17,7 @@ pytestmark = pytest.mark.validation
 @pytest.fixture(scope="module")
 def study(checkout):
     spec = importlib.util.spec_from_file_location(
-        "hover_noise", checkout / "studies" / "hover_noise.py"
+        "hover_noise", checkout / "studies" / "validation" / "hover_noise.py"
     )
     module = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(module)

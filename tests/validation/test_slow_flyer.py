@@ -16,7 +16,9 @@ from propmdao.formats.propellers import load_propeller
 
 pytestmark = pytest.mark.validation
 
-MEASURED = Path(__file__).parents[2] / "studies" / "measurements" / "uiuc_apcsf_11x4.7.toml"
+MEASURED = (
+    Path(__file__).parents[2] / "studies" / "validation" / "measurements" / "uiuc_apcsf_11x4.7.toml"
+)
 SLOW_FLYER = load_propeller("apcsf_11x4.7")
 THESIS = load_propeller("apcsf_11x4.7_thesis")
 NACA_4412 = dataclasses.replace(

@@ -25,7 +25,7 @@ pytestmark = [
     ),
 ]
 
-MEASURED = Path(__file__).parents[2] / "studies" / "measurements"
+MEASURED = Path(__file__).parents[2] / "studies" / "validation" / "measurements"
 # Mean absolute errors in per cent: static CT, CP of each point; CT, CP to J 0.5 and beyond of the
 # static coefficient; ratio of the slopes of static CT. The twist offset in degrees.
 PUBLISHED = {

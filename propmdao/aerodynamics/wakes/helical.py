@@ -13,8 +13,9 @@ has a first speed that falls with the number of blades (as CT over solidity) and
 for twisted blades.
 
 The numbers 0.7, 1 and 2, the defaults of `WakeLaw`, are those at which sheets in hover move as they
-themselves and the blades induce: `studies/wake_transport.py` lets the two parts drift until they
-do, with two to four blades, in hover and in flight, where V counts for more (docs/verification.md).
+themselves and the blades induce: `studies/validation/wake_transport.py` lets the two parts drift
+until they do, with two to four blades, in hover and in flight, where V counts for more
+(docs/verification.md).
 Limits: w is uniform over the disk; swirl and the roll-up itself are left out.
 """
 

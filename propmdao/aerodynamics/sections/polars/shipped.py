@@ -31,7 +31,7 @@ CLARKY_SHARES = {"e63": 0.0, "e63-clarky": 0.5, "clarky": 1.0}
 SHAPES = ("naca4", *CLARKY_SHARES)
 #: Critical amplification of e^n transition in the tables, the same for every blade: moulded edges,
 #: and air that other blades have stirred. A clean wind tunnel has 9 to 12, a dirty one 4 to 8
-#: (Drela, XFOIL user guide); studies/aerodynamic_sensitivity.py shows what it changes.
+#: (Drela, XFOIL user guide); studies/validation/aerodynamic_sensitivity.py shows what it changes.
 SHIPPED_N_CRIT = 5.0
 
 #: Units of the whole numbers in the file: of cl, ln(cd), cm.

@@ -1,13 +1,14 @@
-"""A design search on workers: processes, Dask or MPI, whichever is there. To copy and change.
+r"""A design search on workers: processes, Dask or MPI, whichever is there. To copy and change.
 
 Twist and chord of the APC Slow Flyer 11x4.7 for the least torque at 8 m/s and 1.2 N, without more
 noise than it makes as it is, by differential evolution. A Problem cannot be sent to a worker, so
 each builds its own by ``build_problem``; what the driver sends are numbers. The search, and the
 design it ends in, are the same wherever its candidates run.
 
-    python studies/parallel_design.py --workers 2
-    python studies/parallel_design.py --workers 2 --on dask
-    OPENMDAO_USE_MPI=0 mpiexec -n 3 python -m mpi4py.futures studies/parallel_design.py --on mpi
+    python studies/design/parallel_design.py --workers 2
+    python studies/design/parallel_design.py --workers 2 --on dask
+    OPENMDAO_USE_MPI=0 mpiexec -n 3 python -m mpi4py.futures \
+        studies/design/parallel_design.py --on mpi
 
 The last starts one process that searches and two that work; every model is on one process, which
 is what OPENMDAO_USE_MPI=0 tells OpenMDAO. Stop a search, or have it killed, and run it again with

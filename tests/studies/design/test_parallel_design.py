@@ -15,7 +15,7 @@ pytestmark = pytest.mark.slow
 
 def search(checkout: Path, folder: Path, *arguments: str, launcher: tuple[str, ...] = ()) -> str:
     """The last line of what the study prints: its design."""
-    study = str(checkout / "studies" / "parallel_design.py")
+    study = str(checkout / "studies" / "design" / "parallel_design.py")
     few = ("--generations", "2", "--population", "8")
     command = [*(launcher or (sys.executable,)), study, *few, *arguments]
     environment = os.environ | {
