@@ -123,8 +123,19 @@ def add_analyze(commands: argparse._SubParsersAction[Any]) -> None:
         "--figures",
         type=Path,
         metavar="FOLDER",
-        help="spectrum, third octaves and pressure at the first observer, directivity of an arc,"
-        " map of a hemisphere, as PNG",
+        help="spectrum, third octaves and pressure at the observer of the loudest tones,"
+        " directivity of an arc, map of a hemisphere, as PNG",
+    )
+    group.add_argument(
+        "--figure-at",
+        type=int,
+        metavar="N",
+        help="spectrum, third octaves and pressure at the N-th observer, counted from 1",
+    )
+    group.add_argument(
+        "--figure-dba",
+        action="store_true",
+        help="directivity and map of a hemisphere A-weighted",
     )
 
 
@@ -191,14 +202,21 @@ def _check(options: argparse.Namespace) -> None:
             raise ValueError(f"{option} needs observers, as with --arc 1.905 -45")
     if options.full_scale is not None and options.wav is None:
         raise ValueError("--full-scale is of a sound file: add --wav FILE.wav")
+    if options.figures is None and (options.figure_at is not None or options.figure_dba):
+        raise ValueError("--figure-at and --figure-dba are of figures: add --figures FOLDER")
     if options.wav is not None:
         require_output("--wav", options.wav, ".wav")
     if options.figures is not None:
         require_figures("--figures", options.figures)
 
 
-def _check_sound(options: argparse.Namespace, n_observers: int) -> None:
-    """Refuse sound that no file holds, before the work."""
+def _check_observers(options: argparse.Namespace, n_observers: int) -> None:
+    """Refuse more observers than a sound file holds and a figure of none, before the work."""
+    if options.figure_at is not None and not 1 <= options.figure_at <= n_observers:
+        raise ValueError(
+            f"--figure-at must be within 1 ... {n_observers}, the observers in the order of the"
+            f" table; it is {options.figure_at}"
+        )
     if options.wav is not None:
         from propmdao.analysis.sounds import require_sound
 
@@ -216,7 +234,9 @@ def _write(options: argparse.Namespace, analysis: Analysis) -> dict[str, Any]:
     if options.figures is not None:
         from propmdao.figures.of_analysis import analysis_figures
 
-        written["figures"] = save_figures(options.figures, analysis_figures(analysis))
+        observer = None if options.figure_at is None else options.figure_at - 1
+        figures = analysis_figures(analysis, observer, options.figure_dba)
+        written["figures"] = save_figures(options.figures, figures)
     return written
 
 

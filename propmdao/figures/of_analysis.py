@@ -7,30 +7,34 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from propmdao.acoustics.kinematics.observers import directions, labels
-from propmdao.acoustics.levels.decibels import level_db
+from propmdao.acoustics.kinematics.observers import directions, on_map
+from propmdao.acoustics.levels.decibels import level_db, oaspl_db
 from propmdao.analysis.results import MECHANISMS, Analysis
 from propmdao.analysis.self_noise import BANDS_HZ
 from propmdao.figures.directivity import directivity, hemisphere_map
 from propmdao.figures.pressure import blade_passage, pressure
 from propmdao.figures.sound import Sound, band_levels, source_levels
 from propmdao.figures.spectra import harmonic_spectrum, narrowband_spectrum, third_octaves
-from propmdao.figures.style import LEVEL, Floats
+from propmdao.figures.style import LEVEL, LEVEL_DBA, Floats
 from propmdao.records.listening import Listening
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 
-def analysis_figures(analysis: Analysis, observer: int = 0) -> dict[str, Figure]:
+def analysis_figures(
+    analysis: Analysis, observer: int | None = None, a_weighted: bool = False
+) -> dict[str, Figure]:
     """Draw an analysis.
 
     Parameters
     ----------
     analysis : Analysis
         Analysis with one observer or more.
-    observer : int
-        Index of the observer of spectrum and pressure.
+    observer : int, optional
+        Index of the observer of spectrum and pressure, by default that of the loudest tones.
+    a_weighted : bool
+        Whether levels over direction are A-weighted.
 
     Returns
     -------
@@ -48,18 +52,23 @@ def analysis_figures(analysis: Analysis, observer: int = 0) -> dict[str, Figure]
     positions = analysis.listening.observers
     if len(positions) == 0:
         raise ValueError("figures need observers")
+    if observer is None:
+        observer = int(np.argmax(np.asarray(oaspl_db(analysis.tones.total))))
     if not 0 <= observer < len(positions):
         raise ValueError(f"observer must be within 0 ... {len(positions) - 1}; it is {observer}")
     sound = analysis_sound(analysis)
     figures = _at_observer(analysis, sound, observer)
-    levels = source_levels(sound)
+    levels = source_levels(sound, a_weighted)
+    label = f"OASPL, {LEVEL_DBA if a_weighted else LEVEL}"
+    title = _operation(analysis)
     numbers = {"directivity": 0, "hemisphere": 0}
     for kind, members in _groups(analysis.listening):
         here = {source: level[members] for source, level in levels.items()}
         if kind == "arc":
-            name, figure = "directivity", _arc(positions[members], here)
+            name, figure = "directivity", _arc(positions[members], here, label, title)
         elif kind == "hemisphere":
-            name, figure = "hemisphere", _hemisphere(analysis.listening, members, here["total"])
+            name, level = "hemisphere", here["total"]
+            figure = _hemisphere(analysis.listening, members, level, label, title)
         else:
             continue
         if figure is not None:
@@ -113,19 +122,28 @@ def mechanism_levels(analysis: Analysis, observer: int = 0) -> dict[str, Floats]
 
 def _at_observer(analysis: Analysis, sound: Sound, observer: int) -> dict[str, Figure]:
     """Spectrum and pressure at one observer, and third octaves with broadband noise."""
-    positions = analysis.listening.observers
-    radius = directions(positions[observer]).radius
-    title = (
-        f"{analysis.propeller.name}, {analysis.rpm:.0f} rpm, {labels(positions)[observer]},"
-        f" {radius:.4g} m"
-    )
+    seen = directions(analysis.listening.observers[observer]).rounded()
+    place = f"{seen.elevation_deg:.4g}°"
+    # Straight below and above there is no azimuth.
+    if abs(seen.elevation_deg) < 90.0 and seen.azimuth_deg != 0.0:
+        place += f", azimuth {seen.azimuth_deg:.4g}°"
+    title = f"{_operation(analysis)}; observer {observer + 1}: {place}, {seen.radius:.4g} m"
     figures = {"pressure": pressure({title: blade_passage(sound.tones, observer)})}
     if sound.has_broadband:
         figures["spectrum"] = narrowband_spectrum({title: sound}, observer)
-        figures["third_octaves"] = third_octaves(BANDS_HZ, mechanism_levels(analysis, observer))
+        figures["third_octaves"] = third_octaves(
+            BANDS_HZ, mechanism_levels(analysis, observer), title=title
+        )
     else:
         figures["spectrum"] = harmonic_spectrum({title: sound}, observer)
     return figures
+
+
+def _operation(analysis: Analysis) -> str:
+    """Propeller, rotation speed and flight speed for titles."""
+    speed = float(analysis.point.speed)
+    flight = f"{speed:.4g} m/s" if speed else "hover"
+    return f"{analysis.propeller.name}, {analysis.rpm:.0f} rpm, {flight}"
 
 
 def _groups(listening: Listening) -> Iterator[tuple[str, slice]]:
@@ -140,22 +158,26 @@ def _groups(listening: Listening) -> Iterator[tuple[str, slice]]:
         start += group.n
 
 
-def _arc(positions: Floats, levels: dict[str, Floats]) -> Figure | None:
+def _arc(positions: Floats, levels: dict[str, Floats], label: str, title: str) -> Figure | None:
     """Polar diagram of an arc, if it has three elevations or more."""
-    seen = np.round(directions(positions).elevation_deg, 9)
-    elevation, rising = np.unique(seen, return_index=True)
+    seen = directions(positions).rounded()
+    elevation, rising = np.unique(seen.elevation_deg, return_index=True)
     if elevation.size < 3:
         return None
-    return directivity(elevation, {source: level[rising] for source, level in levels.items()})
+    return directivity(
+        elevation,
+        {source: level[rising] for source, level in levels.items()},
+        label=label,
+        title=f"{title}; {seen.radius[0]:.4g} m",
+    )
 
 
-def _hemisphere(listening: Listening, members: slice, level: Floats) -> Figure:
+def _hemisphere(
+    listening: Listening, members: slice, level: Floats, label: str, title: str
+) -> Figure:
     """Map of a hemisphere, whose observers are in the order of `observers.hemisphere`."""
-    # Of n elevations and 4 n - 3 azimuths: both run in the same steps, over 90 and 360 deg.
-    n = round((3.0 + np.sqrt(9.0 + 16.0 * level.size)) / 8.0)
-    elevation, azimuth = np.linspace(-90.0, 0.0, n), np.linspace(0.0, 360.0, 4 * n - 3)
     radius = directions(listening.observers[members.start]).radius
-    label = f"OASPL at {radius:.4g} m, {LEVEL}"
+    title = f"{title}; {radius:.4g} m"
     if listening.surroundings.level_flight:
-        label += "; azimuth from the nose"
-    return hemisphere_map(elevation, azimuth, level.reshape(n, 4 * n - 3), label)
+        title += "; azimuth from the nose"
+    return hemisphere_map(*on_map(level), label=label, title=title)

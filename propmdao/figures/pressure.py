@@ -8,15 +8,23 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from propmdao.acoustics.levels.decibels import pressure_history
+from propmdao.acoustics.levels.decibels import REFERENCE_PRESSURE, pressure_history
 from propmdao.acoustics.signals import Tones
 from propmdao.figures.sound import amplitudes
-from propmdao.figures.style import SOURCE_COLORS, Floats, line_colors, rows_of_axes
+from propmdao.figures.style import (
+    LOWEST_LEVEL,
+    SOURCE_COLORS,
+    Floats,
+    line_colors,
+    rows_of_axes,
+    say_silent,
+)
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 _TIMES = 256  # in a blade passage
+_LOWEST_PRESSURE = REFERENCE_PRESSURE * 10 ** (LOWEST_LEVEL / 20)
 
 
 class PressureRecord(NamedTuple):
@@ -99,13 +107,15 @@ def pressure(records: Mapping[str, PressureRecord]) -> Figure:
     Returns
     -------
     Figure
-        The figure. Of parts that are no noise sources, each is drawn broader than the one before,
-        so that tones show on the noise that they are a part of.
+        The figure, without parts below -100 dB. Of parts that are no noise sources, each is drawn
+        broader than the one before, so that tones show on the noise that they are a part of.
     """
     figure, rows = rows_of_axes(len(records))
     for axes, (name, record) in zip(rows, records.items(), strict=True):
         colors = line_colors(record.parts)
         for i, (part, values) in enumerate(record.parts.items()):
+            if np.sqrt(np.mean(np.square(values))) < _LOWEST_PRESSURE:
+                continue
             width = 2.0 if part in SOURCE_COLORS else 1.0 + i
             axes.plot(
                 1e3 * record.time, 1e3 * values, color=colors[part], linewidth=width, label=part
@@ -113,6 +123,13 @@ def pressure(records: Mapping[str, PressureRecord]) -> Figure:
         axes.set_title(name, fontsize="medium", loc="left")
         axes.set_ylabel("pressure, mPa")
         axes.margins(x=0.0)
+        if not axes.lines:
+            axes.set(xlim=(0.0, 1e3 * record.time[-1]), ylim=(-1.0, 1.0))
+            say_silent(axes)
     rows[-1].set_xlabel("time since blade 1 was at azimuth 0, ms")
-    figure.legend(*rows[0].get_legend_handles_labels(), loc="outside upper right", ncols=4)
+    drawn = {line.get_label(): line for axes in reversed(rows) for line in axes.lines}
+    if drawn:
+        names = [name for name in next(iter(records.values())).parts if name in drawn]
+        names += [name for name in drawn if name not in names]
+        figure.legend([drawn[name] for name in names], names, loc="outside upper right", ncols=4)
     return figure

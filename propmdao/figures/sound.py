@@ -9,6 +9,7 @@ from jax import Array
 
 from propmdao.acoustics.levels.bands import tones_in_bands
 from propmdao.acoustics.levels.decibels import level_db, mean_square
+from propmdao.acoustics.levels.weighting import a_weighting
 from propmdao.acoustics.signals import Tones
 from propmdao.figures.style import SOURCE_COLORS, Floats
 
@@ -73,27 +74,33 @@ def amplitudes(tones: Tones) -> dict[str, Array]:
     return parts | {"total": tones.total}
 
 
-def source_levels(sound: Sound) -> dict[str, Floats]:
+def source_levels(sound: Sound, a_weighted: bool = False) -> dict[str, Floats]:
     """Overall level of each noise source and of all together.
 
     Parameters
     ----------
     sound : Sound
         Tones and maybe broadband noise.
+    a_weighted : bool
+        Whether the levels are A-weighted.
 
     Returns
     -------
     dict of str to (n_observers,) array
-        OASPL [dB] of each source of the tones, of "broadband" where there is such noise, and of
-        the "total".
+        OASPL [dB or dBA] of each source of the tones, of "broadband" where there is such noise, and
+        of the "total".
     """
+    weight, band_weight = (
+        np.asarray(a_weighting(frequency)) ** 2 if a_weighted else np.ones(np.size(frequency))
+        for frequency in (sound.tones.frequency_hz, sound.bands_hz)
+    )
     energy = {
-        source: np.sum(np.asarray(mean_square(pressure)), axis=-1)
+        source: np.asarray(mean_square(pressure)) @ weight
         for source, pressure in amplitudes(sound.tones).items()
     }
     total = energy.pop("total")
     if sound.has_broadband:
-        energy["broadband"] = sound.broadband.sum(axis=-1)
+        energy["broadband"] = sound.broadband @ band_weight
         total = total + energy["broadband"]
     energy["total"] = total
     return {source: np.asarray(level_db(power)) for source, power in energy.items()}

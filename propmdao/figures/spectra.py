@@ -14,6 +14,7 @@ from propmdao.figures.sound import Sound, amplitudes, band_levels
 from propmdao.figures.style import (
     GRID,
     LEVEL,
+    LOWEST_LEVEL,
     RUN_COLORS,
     SOURCE_COLORS,
     Measured,
@@ -21,6 +22,7 @@ from propmdao.figures.style import (
     line_colors,
     page,
     rows_of_axes,
+    say_silent,
 )
 
 if TYPE_CHECKING:
@@ -44,12 +46,13 @@ def harmonic_spectrum(sounds: Mapping[str, Sound], observer: int = 0) -> Figure:
     Returns
     -------
     Figure
-        Stems that start 80 dB below the loudest tone; quieter tones are not drawn.
+        Stems that start 80 dB below the loudest tone; quieter tones, and those below -100 dB, are
+        not drawn.
     """
     figure, rows = rows_of_axes(len(sounds))
     loudest = max(float(np.max(spl_db(sound.tones.total[observer]))) for sound in sounds.values())
-    top = 5.0 * np.ceil(loudest / 5.0 + 1.0)
-    floor = top - 80.0
+    top = 5.0 * np.ceil(max(loudest, LOWEST_LEVEL + 70.0) / 5.0 + 1.0)
+    floor = max(top - 80.0, LOWEST_LEVEL)
     for axes, (name, sound) in zip(rows, sounds.items(), strict=True):
         frequency = np.asarray(sound.tones.frequency_hz)
         parts = amplitudes(sound.tones)
@@ -57,6 +60,8 @@ def harmonic_spectrum(sounds: Mapping[str, Sound], observer: int = 0) -> Figure:
         for i, (source, pressure) in enumerate(parts.items()):
             level = np.asarray(spl_db(pressure[observer]))
             drawn = level > floor
+            if not drawn.any():
+                continue
             beside = (i - 0.5 * (len(parts) - 1)) * 0.05 * frequency[0]
             stems = axes.stem(
                 frequency[drawn] + beside, level[drawn], bottom=floor, basefmt=" ", label=source
@@ -65,9 +70,13 @@ def harmonic_spectrum(sounds: Mapping[str, Sound], observer: int = 0) -> Figure:
             stems.stemlines.set(color=colors[source], linewidth=2.0)
         axes.set_title(f"{name}: BPF {frequency[0]:.1f} Hz", fontsize="medium", loc="left")
         axes.set(ylabel=f"SPL, {LEVEL}", ylim=(floor, top))
+        if not axes.containers:
+            axes.set_xlim(right=1.05 * frequency[-1])
+            say_silent(axes)
     rows[-1].set_xlabel("frequency, Hz (sources side by side)")
     rows[-1].set_xlim(left=0.0)
-    rows[0].legend(loc="upper right", ncols=3, framealpha=0.95)
+    if rows[0].containers:
+        rows[0].legend(loc="upper right", ncols=3, framealpha=0.95)
     return figure
 
 
@@ -93,14 +102,14 @@ def narrowband_spectrum(
     """
     figure, rows = rows_of_axes(len(sounds))
     bins = bin_hz * np.arange(1, np.ceil(_HIGHEST * 1.2 / bin_hz))
-    loudest = -200.0
+    loudest = LOWEST_LEVEL
     for axes, (name, sound) in zip(rows, sounds.items(), strict=True):
         loudest = max(loudest, _draw_narrowband(axes, sound, observer, bins))
         bpf = sound.tones.frequency_hz[0]
         axes.set_title(f"{name}: BPF {bpf:.1f} Hz", fontsize="medium", loc="left")
         axes.set_ylabel(f"SPL, {LEVEL}")
     top = 5.0 * np.ceil(loudest / 5.0 + 0.5)
-    rows[0].set_ylim(top - 60.0, top)
+    rows[0].set_ylim(max(top - 60.0, LOWEST_LEVEL), top)
     _frequency_axis(rows[-1])
     handles, names = rows[0].get_legend_handles_labels()
     figure.legend(handles, names, loc="outside upper center", ncols=3, fontsize="medium")
@@ -133,7 +142,10 @@ def _draw_narrowband(axes: Any, sound: Sound, observer: int, bins: npt.NDArray[A
 
 
 def third_octaves(
-    bands_hz: npt.ArrayLike, levels: Mapping[str, npt.ArrayLike], measured: Measured | None = None
+    bands_hz: npt.ArrayLike,
+    levels: Mapping[str, npt.ArrayLike],
+    measured: Measured | None = None,
+    title: str = "",
 ) -> Figure:
     """Third-octave spectra, computed and measured.
 
@@ -145,22 +157,26 @@ def third_octaves(
         Computed band levels by name [dB]: lines.
     measured : mapping of str to (bands_hz, levels), optional
         Measured band levels by the same names: dots, joined by a thin line.
+    title : str
+        Title.
 
     Returns
     -------
     Figure
-        The figure; levels more than 60 dB below the loudest are not drawn, nor named.
+        The figure; levels more than 60 dB below the loudest, or below -100 dB, are not drawn, nor
+        named.
     """
     figure = page(7.0)
     axes = figure.add_subplot()
     axes.grid(**GRID)
     measured = measured or {}
     every = [*levels.values(), *(known for _, known in measured.values())]
-    top = 5.0 * np.ceil(max(np.max(level) for level in every) / 5.0 + 0.5)
+    top = 5.0 * np.ceil(max(LOWEST_LEVEL, *(np.max(level) for level in every)) / 5.0 + 0.5)
+    floor = max(top - 60.0, LOWEST_LEVEL)
     colors = line_colors(levels)
     for name, level in levels.items():
         color = colors[name]
-        if np.max(level) > top - 60.0:
+        if np.max(level) > floor:
             style = "-" if name in SOURCE_COLORS or not measured else "--"
             axes.plot(
                 np.asarray(bands_hz), np.asarray(level), style, color=color, label=name,
@@ -169,9 +185,13 @@ def third_octaves(
         if name in measured:
             band, known = (np.asarray(values, float) for values in measured[name])
             axes.plot(band, known, "o-", color=color, linewidth=0.7, label=f"{name}, measured")
-    axes.set(ylabel=f"band level, {LEVEL}", ylim=(top - 60.0, top))
+    axes.set(ylabel=f"band level, {LEVEL}", ylim=(floor, top))
+    axes.set_title(title, fontsize="medium", loc="left")
     _frequency_axis(axes)
-    figure.legend(loc="outside upper center", ncols=4)
+    if axes.lines:
+        figure.legend(loc="outside upper center", ncols=4)
+    else:
+        say_silent(axes)
     return figure
 
 

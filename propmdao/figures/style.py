@@ -41,6 +41,10 @@ LINE_STYLES = ("--", "-", "-.", ":")
 GRID: dict[str, Any] = {"color": "0.9", "linewidth": 0.8}
 #: Unit of levels.
 LEVEL = "dB re 20 µPa"
+#: Unit of A-weighted levels.
+LEVEL_DBA = "dBA re 20 µPa"
+#: Level below which nothing is drawn [dB]: rounding errors, and silence, which is -200 dB.
+LOWEST_LEVEL = -100.0
 
 Floats = npt.NDArray[np.float64]
 #: Measured (abscissa, level in dB) by the name of the line that it belongs to.
@@ -99,12 +103,17 @@ def half_circle(loudest: float, label: str) -> tuple[Figure, PolarAxes]:
     Returns
     -------
     Figure, PolarAxes
-        The figure, with room for a legend on its right, and its axes: draw at angles in radians.
+        The figure, with room for a title above and a legend in its upper right corner, and its
+        axes: draw at angles in radians.
     """
-    figure = page(8.0, layout=None)
-    # Half a circle fills the middle half of its square; the legend stands beside it.
-    axes = cast("PolarAxes", figure.add_axes((-0.06, 0.06, 0.704, 0.88), projection="polar"))
-    top = 5.0 * np.ceil(loudest / 5.0)
+    # Half a circle lies in the middle of its square, which reaches out of the page on the left; the
+    # legend has the corner above the arc.
+    radius, left, below, above = 5.4, 1.0, 0.6, 1.0
+    height = below + 2.0 * radius + above
+    figure = page(height, layout=None)
+    square = (0.1 * (left - 0.5 * radius), below / height, 0.2 * radius, 2.0 * radius / height)
+    axes = cast("PolarAxes", figure.add_axes(square, projection="polar"))
+    top = 5.0 * np.ceil(max(loudest, LOWEST_LEVEL + 40.0) / 5.0)
     floor = top - 40.0
     axes.set(thetamin=-90.0, thetamax=90.0)
     axes.set_ylim(floor, top)
@@ -116,8 +125,19 @@ def half_circle(loudest: float, label: str) -> tuple[Figure, PolarAxes]:
         text.set_horizontalalignment("left" if abs(tick) < 90.0 else "center")
     axes.grid(**GRID)
     # Along the straight edge, beside the levels of the circles.
-    figure.text(0.06, 0.27, label, rotation=90.0, va="center")
+    figure.text(0.02, 0.27, label, rotation=90.0, va="center")
     return figure, axes
+
+
+def say_silent(axes: Any) -> None:
+    """Say on axes why they are empty.
+
+    Parameters
+    ----------
+    axes : Axes
+        Axes on which nothing is drawn.
+    """
+    axes.text(0.5, 0.5, f"nothing above {LOWEST_LEVEL:g} dB", ha="center", transform=axes.transAxes)
 
 
 def line_colors(names: Iterable[str]) -> dict[str, str]:

@@ -194,6 +194,12 @@ def test_what_was_assumed_about_a_propeller_file_is_one_line(
         (f"analyze {PROPELLER} --rpm 4000 --trip light", "trip 'light' is about broadband noise"),
         (f"analyze {PROPELLER} --rpm 4000 --wav a.wav", "--wav needs observers"),
         (f"analyze {PROPELLER} --rpm 4000 --figures a", "--figures needs observers"),
+        (f"analyze {PROPELLER} --rpm 4000 --arc 1 0 --figure-at 1", "add --figures FOLDER"),
+        (
+            f"analyze {PROPELLER} --rpm 4000 --arc 1 0 30 --figures a --figure-at 3",
+            "--figure-at must be within 1 ... 2, the observers in the order of the table; it is 3",
+        ),
+        (f"analyze {PROPELLER} --rpm 4000 --arc 1 0 --figures a --figure-at 0", "it is 0"),
         (f"analyze {PROPELLER} --rpm 1:2:1 --arc 1 0 --wav a.wav", "of one operating point"),
         (f"analyze {PROPELLER} --rpm 4000 --arc 1 0 --wav a.mp3", "a.mp3: the file must end in"),
         (f"analyze {PROPELLER} --rpm 4000 --arc 1 0 --wav no/a.wav", "there is no folder no"),
@@ -296,7 +302,9 @@ def test_help_explains_every_option(capsys: pytest.CaptureFixture[str]) -> None:
     text = capsys.readouterr().out
     options = "--rpm --thrust --speed --rho --twist-offset --inviscid --no-stall-delay --polar"
     options += " --arc --point --circle --hemisphere --grid --ground --level --absorption"
-    options += " --broadband --trip --wav --seconds --full-scale --figures --json"
+    options += (
+        " --broadband --trip --wav --seconds --full-scale --figures --figure-at --figure-dba --json"
+    )
     for option in options.split():
         assert option in text
     assert "examples:" in text

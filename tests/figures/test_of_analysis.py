@@ -13,7 +13,8 @@ pytest.importorskip("matplotlib")
 
 from propmdao.acoustics.broadband.self_noise import SelfNoise
 from propmdao.acoustics.kinematics.observers import arc, hemisphere, point
-from propmdao.acoustics.levels.decibels import oaspl_db
+from propmdao.acoustics.levels.decibels import mean_square, oaspl_db
+from propmdao.acoustics.levels.weighting import level_dba
 from propmdao.acoustics.signals import Tones
 from propmdao.analysis.results import MECHANISMS
 from propmdao.analysis.self_noise import BANDS_HZ
@@ -34,6 +35,7 @@ def analysis(observers, groups=(), broadband=False, surroundings=FREE_FIELD):
     return SimpleNamespace(
         propeller=SimpleNamespace(name="blade"),
         rpm=4200.0,
+        point=SimpleNamespace(speed=8.0),
         tones=Tones(140.0 * jnp.arange(1.0, 4.0), {"thickness": thickness, "loading": loading}),
         broadband=SelfNoise(**noise) if broadband else None,
         listening=Listening(observers, surroundings, groups),
@@ -55,15 +57,43 @@ def test_figures_need_observers_that_there_are():
         analysis_figures(analysis(np.zeros((0, 3))))
     for wrong in (-1, 3):
         with pytest.raises(ValueError, match=f"observer must be within 0 ... 2; it is {wrong}"):
-            analysis_figures(analysis(ARC), at=wrong)
+            analysis_figures(analysis(ARC), wrong)
 
 
 def test_spectrum_and_pressure_are_at_the_observer_asked_for():
-    for at, elevation in ((None, "-45°"), (2, "45°")):
-        figures = analysis_figures(analysis(ARC), at)
-        title = f"blade, 4200 rpm, {elevation}, 1.905 m"
+    for observer, place in ((0, "observer 1: -45°"), (2, "observer 3: 45°")):
+        figures = analysis_figures(analysis(ARC), observer)
+        title = f"blade, 4200 rpm, 8 m/s; {place}, 1.905 m"
         assert figures["pressure"].axes[0].get_title(loc="left") == title
         assert figures["spectrum"].axes[0].get_title(loc="left") == f"{title}: BPF 140.0 Hz"
+
+
+def test_the_observer_of_the_loudest_tones_is_drawn_unless_another_is_asked_for(line):
+    found = analysis(ARC)
+    loud = found.tones.each(lambda p: p.at[1].multiply(3.0).at[0].multiply(1e-13))
+    found = SimpleNamespace(**vars(found) | {"tones": loud})
+    figures = analysis_figures(found)
+    assert "; observer 2: 0°, 1.905 m" in figures["pressure"].axes[0].get_title(loc="left")
+    silent = analysis_figures(found, 0)
+    for name in ("spectrum", "pressure"):
+        axes = silent[name].axes[0]
+        assert not axes.lines and not axes.containers
+        assert [text.get_text() for text in axes.texts] == ["nothing above -100 dB"]
+    _, level = line(figures["directivity"], "total").get_data()
+    assert level[1] == pytest.approx(float(oaspl_db(loud.total)[1]))
+
+
+def test_levels_over_direction_can_be_a_weighted(line):
+    found = analysis(ARC, broadband=True)
+    figure = analysis_figures(found, a_weighted=True)["directivity"]
+    frequency = np.concatenate([found.tones.frequency_hz, BANDS_HZ])
+    power = np.concatenate(
+        [mean_square(found.tones.total), np.asarray(found.broadband.total)], axis=1
+    )
+    expected = np.asarray(level_dba(frequency, power))
+    floor = figure.axes[0].get_ylim()[0]
+    assert_allclose(line(figure, "total").get_ydata(), np.maximum(expected, floor))
+    assert "dBA" in [text.get_text() for text in figure.texts][0]
 
 
 def test_every_group_has_its_own_figure_of_its_own_observers(line):
@@ -92,7 +122,8 @@ def test_every_group_has_its_own_figure_of_its_own_observers(line):
     assert_allclose(np.degrees(angle), [-60.0, 0.0, 60.0], atol=1e-9)
     assert_allclose(level, total[:-4:-1])
     for name, radius in (("hemisphere", 5), ("hemisphere_2", 9)):
-        assert figures[name].axes[1].get_ylabel() == f"OASPL at {radius} m, dB re 20 µPa"
+        assert figures[name].axes[1].get_ylabel() == "OASPL, dB re 20 µPa"
+        assert figures[name].texts[0].get_text() == f"blade, 4200 rpm, 8 m/s; {radius} m"
 
 
 def test_observers_without_groups_are_an_arc_if_they_lie_on_one():
@@ -106,8 +137,8 @@ def test_a_hemisphere_below_an_aircraft_is_named_from_its_nose():
     below = around.from_ground_axes(hemisphere(5.0, 45.0))
     groups = (ObserverGroup("below", "hemisphere", len(below)),)
     figures = analysis_figures(analysis(below, groups, surroundings=around))
-    label = figures["hemisphere"].axes[1].get_ylabel()
-    assert "OASPL at 5 m" in label and "azimuth from the nose" in label
+    title = figures["hemisphere"].texts[0].get_text()
+    assert title == "blade, 4200 rpm, 8 m/s; 5 m; azimuth from the nose"
 
 
 def test_third_octaves_of_the_mechanisms_add_up_to_the_noise():

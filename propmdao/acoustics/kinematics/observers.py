@@ -184,13 +184,13 @@ def hemisphere(radius: float, step_deg: float = 10.0) -> Positions:
     radius : float
         Distance from the rotor centre [m].
     step_deg : float
-        Step between neighbours in elevation (-90 ... 0) and azimuth (0 ... 360, closed) [deg], a
-        divisor of 90.
+        Step between neighbours in elevation (-90 ... 0) and azimuth [deg], a divisor of 90.
 
     Returns
     -------
-    ((90 / step + 1) * (360 / step + 1), 3) array
-        Positions [m] in the order of `sphere`.
+    (1 + (90 / step) * (360 / step), 3) array
+        Positions [m]: one straight below, then those of `sphere` at each elevation from the lowest
+        to 0, every one in its own place; `on_map` lays out their levels.
 
     Raises
     ------
@@ -202,7 +202,54 @@ def hemisphere(radius: float, step_deg: float = 10.0) -> Positions:
     n = round(90 / step_deg)
     if abs(n * step_deg - 90) > 1e-9:
         raise ValueError(f"step of a hemisphere must divide 90 deg; got {step_deg:g}")
-    return sphere(radius, np.linspace(-90, 0, n + 1), np.linspace(0, 360, 4 * n + 1))
+    elevation, azimuth = np.linspace(-90, 0, n + 1)[1:], np.linspace(0, 360, 4 * n + 1)[:-1]
+    return np.concatenate([point(radius, -90), sphere(radius, elevation, azimuth)])
+
+
+class HemisphereMap(NamedTuple):
+    """Values at the observers of `hemisphere` as a table over elevation and closed azimuth.
+
+    Attributes
+    ----------
+    elevation_deg : (n + 1,) array
+        Elevations from -90 to 0 [deg].
+    azimuth_deg : (4 n + 1,) array
+        Azimuths from 0 to 360 [deg].
+    values : (n + 1, 4 n + 1) array
+        Values; the first row repeats the one straight below, the last column the first.
+    """
+
+    elevation_deg: NDArray[np.float64]
+    azimuth_deg: NDArray[np.float64]
+    values: NDArray[np.float64]
+
+
+def on_map(values: ArrayLike) -> HemisphereMap:
+    """Lay out values at the observers of a hemisphere as a map wants them.
+
+    Parameters
+    ----------
+    values : (n_observers,) array_like
+        Values in the order of `hemisphere`.
+
+    Returns
+    -------
+    HemisphereMap
+        Values over elevation and azimuth.
+
+    Raises
+    ------
+    ValueError
+        If no hemisphere has this number of observers.
+    """
+    below, *rest = np.asarray(values, float)
+    n = round(np.sqrt(len(rest) / 4))
+    if n < 1 or 4 * n * n != len(rest):
+        raise ValueError(f"a hemisphere has 1 + 4 n^2 observers; got {len(rest) + 1}")
+    around = np.reshape(rest, (n, 4 * n))
+    closed = np.concatenate([around, around[:, :1]], axis=1)
+    table = np.concatenate([np.full((1, 4 * n + 1), below), closed])
+    return HemisphereMap(np.linspace(-90, 0, n + 1), np.linspace(0, 360, 4 * n + 1), table)
 
 
 def grid(x: ArrayLike, y: ArrayLike, z: ArrayLike) -> Positions:

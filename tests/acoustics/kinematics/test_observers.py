@@ -11,6 +11,7 @@ from propmdao.acoustics.kinematics.observers import (
     grid,
     hemisphere,
     labels,
+    on_map,
     point,
     sphere,
 )
@@ -77,11 +78,26 @@ def test_a_sphere_is_a_map_of_elevations_by_azimuths():
     np.testing.assert_allclose(seen.azimuth_deg, [azimuth] * 3, atol=1e-12)
 
 
-def test_a_hemisphere_is_the_lower_one_and_closed_in_azimuth():
-    positions = hemisphere(2.0, 30.0).reshape(4, 13, 3)
-    assert positions[..., 2].max() == pytest.approx(0.0, abs=1e-15)
-    np.testing.assert_allclose(positions[0], [[0, 0, -2.0]] * 13, atol=1e-12)
-    np.testing.assert_allclose(positions[:, 0], positions[:, -1], atol=1e-12)
+def test_a_hemisphere_is_the_lower_one_and_has_nobody_twice():
+    positions = hemisphere(2.0, 30.0)
+    assert positions.shape == (1 + 3 * 12, 3)
+    assert positions[:, 2].max() == pytest.approx(0.0, abs=1e-15)
+    np.testing.assert_allclose(positions[0], [0, 0, -2.0], atol=1e-12)
+    apart = np.linalg.norm(positions[:, None] - positions, axis=-1) + 9.0 * np.eye(37)
+    assert apart.min() > 0.5
+
+
+def test_values_of_a_hemisphere_are_laid_out_where_their_observers_are():
+    positions = hemisphere(2.0, 30.0)
+    x, y, z = (on_map(coordinate) for coordinate in positions.T)
+    elevation, azimuth = np.meshgrid(np.radians(x.elevation_deg), np.radians(x.azimuth_deg))
+    assert x.values.shape == (4, 13) and x.azimuth_deg[-1] == 360.0
+    np.testing.assert_allclose(x.values, (2 * np.cos(elevation) * np.cos(azimuth)).T, atol=1e-12)
+    np.testing.assert_allclose(y.values, (2 * np.cos(elevation) * np.sin(azimuth)).T, atol=1e-12)
+    np.testing.assert_allclose(z.values, (2 * np.sin(elevation)).T, atol=1e-12)
+    for wrong in (1, 36, 52):
+        with pytest.raises(ValueError, match=rf"1 \+ 4 n\^2 observers; got {wrong}"):
+            on_map(np.zeros(wrong))
 
 
 def test_a_grid_has_every_combination():
