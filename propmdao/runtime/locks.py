@@ -10,6 +10,8 @@ import warnings
 from collections.abc import Iterator
 from pathlib import Path
 
+from propmdao.runtime.output_files import reason_of
+
 if sys.platform == "win32":
     import msvcrt
 else:
@@ -48,9 +50,12 @@ def locked(path: str | os.PathLike[str]) -> Iterator[None]:
     lock = Path(f"{os.fspath(path)}.lock")
     handle = _opened(lock, path)
     try:
-        os.ftruncate(handle, 0)
-        os.lseek(handle, 0, os.SEEK_SET)
-        os.write(handle, f"process {os.getpid()} on {socket.gethostname()}\n".encode())
+        try:
+            os.ftruncate(handle, 0)
+            os.lseek(handle, 0, os.SEEK_SET)
+            os.write(handle, f"process {os.getpid()} on {socket.gethostname()}\n".encode())
+        except OSError as error:  # a full disk: there is no room for the file either
+            raise ValueError(f"'{path}' cannot be locked: {reason_of(error)}") from None
         yield
     finally:
         # Windows removes no open file, elsewhere it has to go before somebody else can lock it.
@@ -68,8 +73,7 @@ def _opened(lock: Path, path: str | os.PathLike[str]) -> int:
         try:
             handle = os.open(lock, os.O_RDWR | os.O_CREAT, 0o666)
         except (OSError, ValueError) as error:
-            reason = getattr(error, "strerror", None) or error
-            raise ValueError(f"'{path}' cannot be locked: {reason}") from None
+            raise ValueError(f"'{path}' cannot be locked: {reason_of(error)}") from None
         try:
             if not _taken(handle, path):
                 raise InUseError(

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import sys
+from typing import TYPE_CHECKING
 
-from rich.console import Console
+if TYPE_CHECKING:
+    from rich.console import Console
 
 
 def printable(text: object) -> str:
@@ -52,4 +54,6 @@ def plain_console() -> Console:
         Console that takes "[bold]" and ":smile:" for the text that they are. Text of users still
         has to pass `printable`.
     """
+    from rich.console import Console  # slow to import, and not needed for a line
+
     return Console(markup=False, emoji=False)

@@ -112,3 +112,15 @@ def test_what_cannot_be_locked_is_one_line(tmp_path: Path, name: str) -> None:
     ):
         pass
     assert "\n" not in str(caught.value)
+
+
+def test_a_full_disk_is_one_line(path: Path) -> None:
+    resource = pytest.importorskip("resource", reason="limits of processes are POSIX")
+    soft, hard = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (0, hard))
+    try:
+        with pytest.raises(ValueError, match="cannot be locked: ") as caught, locked(path):
+            pytest.fail("it is not locked")
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, (soft, hard))
+    assert "\n" not in str(caught.value) and list(path.parent.iterdir()) == []
