@@ -120,7 +120,8 @@ def read_points(path: str | os.PathLike[str]) -> list[Point]:
     Raises
     ------
     ValueError
-        When there is no such file, a column is no variable, or a cell is not a number.
+        When there is no such file, a column is no variable or comes twice, or a cell is not a
+        number.
     """
     complaint = f"points cannot be read from '{path}'"
     text = read_text(path, ValueError, complaint=complaint, encoding="utf-8-sig")
@@ -132,6 +133,8 @@ def read_points(path: str | os.PathLike[str]) -> list[Point]:
                 f"'{path}' has a column '{name}', which is no variable of a sweep; there are"
                 f" {', '.join(VARIABLES)}"
             )
+        if names.count(name) > 1:
+            raise ValueError(f"'{path}', line 1: the column '{name}' is there more than once")
     points = []
     for number, row in enumerate(rows, start=2):
         try:
@@ -319,7 +322,14 @@ def _suffixes(observers: Any) -> list[str]:
     """What tells the columns of one observer from those of another."""
     from propmdao.acoustics.kinematics.observers import directions  # slow to import
 
-    return [
+    suffixes = [
         f"@{radius:g}m{elevation:+g}deg" + (f"_az{azimuth:+g}deg" if azimuth else "")
         for radius, elevation, azimuth in zip(*directions(observers).rounded(), strict=True)
     ]
+    for number, suffix in enumerate(suffixes):
+        if suffix in suffixes[:number]:
+            raise ValueError(
+                f"observers {suffixes.index(suffix) + 1} and {number + 1} are both at "
+                f"{suffix[1:]}; a table has columns for each, so each must be at its own place"
+            )
+    return suffixes

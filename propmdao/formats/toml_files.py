@@ -5,6 +5,8 @@ from __future__ import annotations
 import dataclasses
 import difflib
 import os
+import re
+import reprlib
 import tomllib
 from pathlib import Path
 from typing import Any
@@ -15,6 +17,10 @@ from propmdao.propeller.checks import PropellerError
 from propmdao.propeller.description import DISTRIBUTIONS, Propeller
 from propmdao.runtime.input_files import read_text
 from propmdao.runtime.output_files import replacing
+
+#: Containers that open within one another in a line, and a number of more digits than `int` takes.
+_DEEP = re.compile(r"(?:[\[{][^\[\]{}]*){50}")
+_LONG = re.compile(r"\d{4301}")
 
 
 def read_toml(path: str | os.PathLike[str]) -> Propeller:
@@ -110,6 +116,12 @@ def propeller_from_text(text: str, label: str, folder: Path | None) -> Propeller
         data = tomllib.loads(text)
     except tomllib.TOMLDecodeError as error:
         raise PropellerError(f"{label}: is not valid TOML: {error}") from error
+    except RecursionError:
+        where = _line_of(text, _DEEP)
+        raise PropellerError(f"{label}{where}: lists and tables are nested too deeply") from None
+    except ValueError:  # what int() refuses
+        where = _line_of(text, _LONG)
+        raise PropellerError(f"{label}{where}: a number has too many digits") from None
     fields = dataclasses.fields(Propeller)
     keys = [field.name for field in fields]
     for key in data:
@@ -127,6 +139,12 @@ def propeller_from_text(text: str, label: str, folder: Path | None) -> Propeller
         raise PropellerError(f"{label}: {error}") from error
 
 
+def _line_of(text: str, what: re.Pattern[str]) -> str:
+    """Line of a text in which a pattern stands, in words; nothing where it is in none."""
+    lines = enumerate(text.splitlines(), start=1)
+    return next((f", line {number}" for number, line in lines if what.search(line)), "")
+
+
 def _airfoil_tables(label: str, tables: Any, folder: Path | None) -> list[tuple[float, str]]:
     """Read airfoils = [{r_over_R, airfoil}, ...]; .dat paths become relative to the folder."""
     pairs = []
@@ -134,7 +152,7 @@ def _airfoil_tables(label: str, tables: Any, folder: Path | None) -> list[tuple[
         if not isinstance(table, dict) or set(table) != {"r_over_R", "airfoil"}:
             raise PropellerError(
                 f'{label}: airfoils must be a list of {{ r_over_R = 0.15, airfoil = "e63" }}; '
-                f"got {table!r}"
+                f"got {reprlib.repr(table)}"
             )
         name = table["airfoil"]
         if folder is not None and isinstance(name, str) and name.endswith(".dat"):

@@ -100,7 +100,8 @@ def read_bytes(
     except OSError as reason:
         raise error(f"{complaint}: {reason.strerror or reason}") from reason
     except ValueError as reason:  # a character that no path can hold
-        raise error(f"{clipped(complaint)}: {reason} in its path") from reason
+        shown = complaint.replace("\0", r"\0")
+        raise error(f"{shown}: {reason} in its path") from reason
 
 
 def clipped(text: str) -> str:

@@ -35,6 +35,7 @@ def test_points_of_a_file(tmp_path: Path) -> None:
     ("content", "said"),
     [
         ("rpm,sped\n3000,1\n", "has a column 'sped', which is no variable"),
+        ("rpm,speed,rpm\n3000,1,4000\n", "line 1: the column 'rpm' is there more than once"),
         ("rpm,speed\n3000,fast\n", "row 2 of .* is not all numbers"),
         ("rpm,speed\n3000,1\n3000\n", "row 3 of .* is not all numbers"),
         ("", "has a column ''"),

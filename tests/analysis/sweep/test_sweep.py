@@ -55,6 +55,15 @@ def test_a_point_is_passed_on_and_its_results_are_a_row(
     assert (row["rho"], row["chord_factor"], row["diameter"]) == ("1.1", "1.1", "0.3")
 
 
+def test_observers_that_are_the_same_have_no_columns_of_their_own(
+    analyzer: Any, propeller: Propeller, tmp_path: Path
+) -> None:
+    path = tmp_path / "sweep.csv"
+    with pytest.raises(ValueError, match=r"^observers 1 and 3 are both at 1.905m-45deg; a table"):
+        sweep(propeller, [{"rpm": 3000.0}], path, observers=arc(1.905, [-45.0, 0.0, -45.0]))
+    assert not path.exists() and not analyzer.asked
+
+
 def test_rows_begin_with_the_point_and_all_that_was_asked_of_it(
     analyzer: Any, propeller: Propeller, tmp_path: Path
 ) -> None:

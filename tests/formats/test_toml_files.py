@@ -1,0 +1,53 @@
+"""Propeller files as other programs and hands leave them."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from propmdao.formats.propellers import load_propeller
+from propmdao.formats.toml_files import read_toml
+from propmdao.propeller.checks import PropellerError
+
+TEXT = """name = "x"
+diameter = 0.25
+n_blades = 2
+r_over_R = [0.15, 1.0]
+c_over_R = [0.1, 0.1]
+beta_deg = [20.0, 10.0]
+airfoils = [{ r_over_R = 0.15, airfoil = "naca4412" }]
+"""
+
+
+@pytest.mark.parametrize("encoding", ["utf-8", "utf-8-sig", "utf-16"])
+def test_a_byte_order_mark_is_read_over(encoding: str, tmp_path: Path) -> None:
+    path = tmp_path / "p.toml"
+    path.write_text(TEXT, encoding=encoding)
+    assert read_toml(path).diameter == 0.25
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "message"),
+    [
+        ("0.25", "[" * 3000 + "]" * 3000, ", line 2: lists and tables are nested too deeply"),
+        ("0.25", "{a = " * 3000 + "1" + "}" * 3000, ", line 2: lists and tables are nested too"),
+        ("[0.1, 0.1]", "[\n" * 3000 + "]" * 3000, ": lists and tables are nested too deeply"),
+        ("0.25", "9" * 5000, ", line 2: a number has too many digits"),
+        ("naca4412", "a\\u0000b.dat", r"a\0b.dat' cannot be read: embedded null byte in its path"),
+    ],
+)
+def test_what_no_file_should_hold_is_one_line(
+    old: str, new: str, message: str, tmp_path: Path
+) -> None:
+    path = tmp_path / "p.toml"
+    path.write_text(TEXT.replace(old, new, 1))
+    with pytest.raises(PropellerError) as caught:
+        read_toml(path)
+    assert str(caught.value).startswith(str(path)) and message in str(caught.value)
+    assert "\n" not in str(caught.value) and len(str(caught.value)) < 400
+
+
+def test_a_path_that_no_file_can_have_is_one_line() -> None:
+    with pytest.raises(PropellerError, match=r"^a\\0b.toml: cannot be read: embedded null byte"):
+        load_propeller("a\0b.toml")
