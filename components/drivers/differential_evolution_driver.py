@@ -124,6 +124,11 @@ class DifferentialEvolutionDriver(Driver):
         return self._search.failed if self._search else 0
 
     @property
+    def failure_reasons(self) -> dict[str, int]:
+        """Number of failed designs by reason, shortened, most frequent first."""
+        return self._search.reasons.counts() if self._search else {}
+
+    @property
     def last_failure(self) -> str:
         """Reason of the latest failure, empty when there was none."""
         return self._search.last_failure if self._search else ""
