@@ -13,6 +13,7 @@ import numpy as np
 
 from propmdao.components.drivers.evaluation.candidate import Array
 from propmdao.components.drivers.same_model import require_same_results
+from propmdao.runtime.output_files import append, require_writable
 
 FORMAT = "propmdao search 1"
 
@@ -30,7 +31,7 @@ class Checkpoint:
     Parameters
     ----------
     path : pathlib.Path
-        The file; it and its folder are made where there is none.
+        The file, made where there is none; whoever uses it holds its lock.
     search : dict
         JSON values that determine the search: written to a new file, and required of an existing
         one. ``"seed"`` may be None: then the file's, or a new one, is taken.
@@ -45,17 +46,18 @@ class Checkpoint:
     Raises
     ------
     ValueError
-        When the file is no checkpoint, is corrupt, or belongs to another search.
+        When the file cannot be written, is no checkpoint, is corrupt, or belongs to another search.
     """
 
     def __init__(self, path: Path, search: dict[str, Any]) -> None:
         self.path = path
         self.n_replayed = 0
         search = json.loads(json.dumps(search))  # as it will be read back
-        path.parent.mkdir(parents=True, exist_ok=True)
+        require_writable(path)
         header, self._entries = self._read() if path.exists() else (None, [])
         if header is None:
-            self.seed = np.random.SeedSequence(search["seed"]).entropy
+            entropy: Any = np.random.SeedSequence(search["seed"]).entropy
+            self.seed: int = entropy
             path.write_bytes(_line({"format": FORMAT, **search, "seed": self.seed}))
         else:
             self.seed = header["seed"]
@@ -132,9 +134,7 @@ class Checkpoint:
             "failure": failure,
             "outputs": {name: value.tolist() for name, value in outputs.items()},
         }
-        # One unbuffered write: the line is in the hands of the system when this returns.
-        with self.path.open("ab", buffering=0) as file:
-            file.write(_line(entry))
+        append(self.path, _line(entry))
 
     def _read(self) -> tuple[dict[str, Any] | None, list[dict[str, Any]]]:
         """Header and entries; an incomplete last line is cut off."""

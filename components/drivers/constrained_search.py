@@ -11,6 +11,7 @@ from scipy.optimize import NonlinearConstraint, OptimizeResult, differential_evo
 from tqdm import tqdm
 
 from propmdao.components.drivers.evaluation.candidate import Array, Candidate
+from propmdao.components.drivers.failure_reasons import FailureReasons
 
 
 @dataclasses.dataclass(frozen=True)
@@ -62,6 +63,8 @@ class ConstrainedSearch:
         Best candidate so far.
     evaluations, failed : int
         Number of candidates evaluated, and number of those that failed.
+    reasons : FailureReasons
+        Why candidates have failed.
     last_failure : str
         Reason of the latest failure, empty when there was none.
     history : list of Generation
@@ -77,6 +80,7 @@ class ConstrainedSearch:
         self.best: Candidate | None = None
         self.evaluations = 0
         self.failed = 0
+        self.reasons = FailureReasons()
         self.last_failure = ""
         self.history: list[Generation] = []
         self._evaluate = evaluate
@@ -129,12 +133,13 @@ class ConstrainedSearch:
         if best.feasible:
             result = f"best objective {best.objective:.8g}"
         elif best.failure:
-            result = f"every analysis failed, last with: {self.last_failure}"
+            result = "every analysis failed"
         else:
             result = f"no feasible design, smallest total violation {best.violation.sum():.3g}"
+        reasons = f" ({self.reasons.text()})" if self.failed else ""
         return (
             f"{result}; {ending} after {max(len(self.history) - 1, 0)} generations, "
-            f"{self.evaluations} designs, {self.failed} of them failed"
+            f"{self.evaluations} designs, {self.failed} of them failed{reasons}"
         )
 
     def _energies(self, positions: Array) -> Array:
@@ -175,6 +180,7 @@ class ConstrainedSearch:
         if candidate.failure:
             self.failed += 1
             self.last_failure = candidate.failure
+            self.reasons.add(candidate.failure)
         if self.best is None or candidate.rank < self.best.rank:
             self.best = candidate
             self._improved(candidate, self.evaluations)

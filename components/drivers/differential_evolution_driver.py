@@ -34,6 +34,8 @@ from propmdao.components.drivers.search_options import (
     declare_file_options,
     declare_search_options,
 )
+from propmdao.runtime.locks import locked
+from propmdao.runtime.output_files import make_folder, require_writable
 from propmdao.runtime.worker_processes import WorkerLostError
 
 SMALLEST_POPULATION = 5  # what strategies with two differences draw from
@@ -59,7 +61,8 @@ class DifferentialEvolutionDriver(Driver):
     - After an interrupt (Ctrl-C) the model is run once at the best design found so far, then
       ``KeyboardInterrupt`` propagates. The same holds when a worker dies (``WorkerLostError``).
     - With ``checkpoint`` every design is on disk once it is evaluated. Run again after whatever
-      ended it, even a kill, the search goes on from there to the same end, or beyond it.
+      ended it, even a kill, the search goes on from there to the same end, or beyond it. It is
+      locked meanwhile: a second search on it ends at once in an ``InUseError``.
     - With ``n_workers`` or ``executor`` the designs of a generation run side by side, on Problems
       that the workers build by ``problem_factory`` and that start from the values of this one.
       The search, its files and its recorded cases are the same, whatever the number of workers,
@@ -124,6 +127,11 @@ class DifferentialEvolutionDriver(Driver):
         return self._search.failed if self._search else 0
 
     @property
+    def failure_reasons(self) -> dict[str, int]:
+        """Number of failed designs by reason, shortened, most frequent first."""
+        return self._search.reasons.counts() if self._search else {}
+
+    @property
     def last_failure(self) -> str:
         """Reason of the latest failure, empty when there was none."""
         return self._search.last_failure if self._search else ""
@@ -163,10 +171,17 @@ class DifferentialEvolutionDriver(Driver):
         if not self._designvars:
             raise RuntimeError(f"{self.msginfo} needs a design variable; the model has none")
         self._design_problem = DesignProblem(self, self.options["equality_tolerance"])
-        seed = self.options["seed"]
-        self._checkpoint = self._open_checkpoint()
-        if self._checkpoint is not None:
-            seed = self._checkpoint.seed
+        if self.options["best_file"] is not None:
+            require_writable(self._output_file("best_file"))
+        if self.options["checkpoint"] is None:
+            self._checkpoint = None
+            return self._run_seeded(self.options["seed"])
+        file = self._output_file("checkpoint")
+        with locked(file):
+            self._checkpoint = self._open_checkpoint(file)
+            return self._run_seeded(self._checkpoint.seed)
+
+    def _run_seeded(self, seed: int | None) -> bool:
         budget = self.options["time_budget"]
         self._deadline = math.inf if budget is None else time.monotonic() + budget
         with model_runner(self) as self._runner:
@@ -224,14 +239,12 @@ class DifferentialEvolutionDriver(Driver):
             )
         return int(size)
 
-    def _open_checkpoint(self) -> Checkpoint | None:
-        if self.options["checkpoint"] is None:
-            return None
+    def _open_checkpoint(self, file: Path) -> Checkpoint:
         # When to stop is no part of it: a search may be resumed with more generations.
         options = ("seed", "strategy", "init", "mutation", "recombination", "equality_tolerance")
         search = {name: self.options[name] for name in options}
         search |= {"pop_size": self._population_size(), **self._design_problem.description()}
-        checkpoint = Checkpoint(self._output_file("checkpoint"), search)
+        checkpoint = Checkpoint(file, search)
         entry = checkpoint.first_success()
         if entry is not None:
             self._design_problem.set_design(np.array(entry["design"]))
@@ -242,7 +255,7 @@ class DifferentialEvolutionDriver(Driver):
     def _output_file(self, option: str) -> Path:
         """Path that an option gives, in the Problem's outputs directory unless it is absolute."""
         path: Path = self._problem().get_outputs_dir() / self.options[option]
-        path.parent.mkdir(parents=True, exist_ok=True)
+        make_folder(path.parent)
         return path
 
     def _evaluate_positions(self, positions: Sequence[Array]) -> Iterator[Candidate]:

@@ -13,6 +13,9 @@ import numpy as np
 import openmdao.api as om
 import pytest
 
+from propmdao.runtime.locks import InUseError, locked
+from propmdao.runtime.output_files import OutputError
+
 SCRIPT = Path(__file__).parent / "worker_models.py"
 
 
@@ -151,6 +154,37 @@ def test_recorded_cases_are_whole_after_a_resume(models, finished, tmp_path):
             assert after["f"] == before["f"] and after["g"].tolist() == before["g"].tolist()
     failed = next(case for case in resumed if not case.success)
     assert np.isnan(failed["f"]).all()
+
+
+# --- one search at a time, and files that cannot be written -------------------------------------
+
+
+def test_a_second_search_on_a_checkpoint_is_refused_before_any_work(models, finished):
+    prob, path = finished
+    cut(path, 30)
+    before = path.read_bytes()
+    with locked(path):
+        second = models.problem(checkpoint=path)
+        with pytest.raises(InUseError, match="checkpoint' is in use by process .*; wait until"):
+            second.run_driver()
+        assert second.driver.iter_count == 0 and path.read_bytes() == before
+    assert resume(models, path).driver.history == prob.driver.history
+    assert not path.with_name("checkpoint.lock").exists()
+
+
+@pytest.mark.parametrize("option", ["checkpoint", "best_file"])
+@pytest.mark.parametrize(
+    ("name", "reason"), [("file/below", "cannot be written"), ("folder", "it is a folder")]
+)
+def test_a_file_that_cannot_be_written_is_known_before_the_first_design(
+    models, tmp_path, option, name, reason
+):
+    (tmp_path / "file").touch()
+    (tmp_path / "folder").mkdir()
+    prob = models.problem(**{option: tmp_path / name})
+    with pytest.raises(OutputError, match=reason) as raised:
+        prob.run_driver()
+    assert prob.driver.iter_count == 0 and "\n" not in str(raised.value)
 
 
 # --- files that cannot be resumed ---------------------------------------------------------------

@@ -29,6 +29,10 @@ def test_failed_designs_lose_and_are_counted(problem, constraint):
     assert prob.driver.failed_candidates == prob.driver.history[-1].failed == failed
     assert f"{failed} of them failed" in prob.driver.message
     assert "stalled below 0.3" in prob.driver.last_failure
+    reasons = prob.driver.failure_reasons
+    assert set(reasons) <= {"comp: stalled below 0.3", "f is not finite: [nan]"}
+    assert sum(reasons.values()) == failed
+    assert f"failed ({reasons['comp: stalled below 0.3']}: comp: " in prob.driver.message
 
 
 @pytest.mark.parametrize("value", [np.nan, np.inf, -np.inf])
@@ -56,7 +60,7 @@ def test_every_analysis_failed(problem):
     result = prob.run_driver()
     assert not result.success and prob.driver.fail and result.exit_status == "FAIL"
     assert "every analysis failed" in prob.driver.message
-    assert "no thrust" in prob.driver.message
+    assert f"({prob.driver.failed_candidates}: comp: no thrust)" in prob.driver.message
     assert_allclose(prob.get_val("x"), 0.4)
 
 
