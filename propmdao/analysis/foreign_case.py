@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import contextlib
+import os
 from collections.abc import Iterator, Sequence
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from pathlib import Path
 from typing import NamedTuple
@@ -116,10 +118,7 @@ def _run(case: Case, progress: tqdm) -> list[CaseResult]:
                     patch.container.motion, points, observers, grid.times, "the sources"
                 )
     histories = [silence(_observers(q.position, q.velocity), q.times) for q in case.observers]
-    for batch in _batches(case.observers):
-        first = case.observers[batch[0][0]]
-        position = np.array([case.observers[number].position[row] for number, row in batch])
-        together = _batch_history(case, patches, _observers(position, first.velocity), first.times)
+    for batch, together in _heard(case, patches):
         for name, pressure in together.parts.items():
             for (number, row), own in zip(batch, pressure, strict=True):
                 histories[number].parts[name][row] = own
@@ -128,6 +127,23 @@ def _run(case: Case, progress: tqdm) -> list[CaseResult]:
         CaseResult(case.name, grid.title, _pressure(case, grid, history))
         for grid, history in zip(case.observers, histories, strict=True)
     ]
+
+
+def _heard(
+    case: Case, patches: Sequence[_Patch]
+) -> Iterator[tuple[list[tuple[int, int]], PressureHistory]]:
+    """Batches of observers and what they hear, on all processors: the work is in compiled code."""
+
+    def hear(batch: list[tuple[int, int]]) -> PressureHistory:
+        grid = case.observers[batch[0][0]]
+        position = np.array([case.observers[number].position[row] for number, row in batch])
+        return _batch_history(case, patches, _observers(position, grid.velocity), grid.times)
+
+    batches = list(_batches(case.observers))
+    # The first by itself: it compiles what the others run.
+    yield batches[0], hear(batches[0])
+    with ThreadPoolExecutor(os.cpu_count()) as pool:
+        yield from zip(batches[1:], pool.map(hear, batches[1:]), strict=True)
 
 
 def _observers(position: NDArray[np.float64], velocity: NDArray[np.float64]) -> Observers:
@@ -207,7 +223,7 @@ def _patch_history(
     history = silence(observers, times)
     for part in segments(times.size, zone.values[0, 0].size if changing or turned else 0):
         t = times[part]
-        multiple = max(128, t.size // 4)
+        multiple = max(128, t.size // 8)
         tau = source_times(motion, points, observers, t, case.sound_speed, container.step, multiple)
         sources = {}
         if surface is not None:
