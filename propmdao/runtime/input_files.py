@@ -11,6 +11,7 @@ from pathlib import Path
 #: Largest magnitude that a number of a file has unless it is said otherwise: the product of some of
 #: them does not overflow.
 LARGEST = 1e30
+_LEAST = 1e-300
 _LONGEST_QUOTE = 60
 _NUMBER = re.compile(
     r"[-+]?(?:\d+\.?\d*|\.\d+)(?:e[-+]?\d+)?|[-+]?(?:nan|inf|infinity)", re.I | re.A
@@ -157,7 +158,7 @@ def finite_number(
     Returns
     -------
     float
-        The number.
+        The number; 0 for one whose inverse overflows.
 
     Raises
     ------
@@ -175,7 +176,7 @@ def finite_number(
             f"{where}: '{clipped(text)}' is out of range; a number must be within "
             f"{-largest:g}..{largest:g}"
         )
-    return value
+    return value if abs(value) > _LEAST else 0.0
 
 
 def fields_of(line: str) -> list[str] | None:

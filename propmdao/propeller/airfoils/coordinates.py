@@ -14,6 +14,8 @@ from propmdao.propeller.airfoils.airfoil import (
 )
 from propmdao.propeller.airfoils.contours import CLOSE, closed, onto_chord_line, selig_order
 
+#: Points as near as this to the leading edge are the nose: their chord angle is 0 [chord].
+_NOSE = 1e-12
 #: Sides may cross by this much: published points are rounded to as little [chord].
 _ROUNDING = 1e-3
 #: A spline that leaves the monotone one by more than this swings between points that lie close and
@@ -72,20 +74,20 @@ def airfoil_from_coordinates(name: str, x: FloatArray, z: FloatArray, source: st
 
 def _side(name: str, x: FloatArray, z: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Return chord angle and z of one side behind the nose, its last point put at x = 1."""
-    x, z = x[x > 0.0], z[x > 0.0]
+    x, z = x[x > _NOSE], z[x > _NOSE]
     if x.size < 2:
         raise AirfoilError(f"airfoil '{name}': a side has {x.size} points behind the nose")
     # Points behind the last that is furthest aft lie on the base of a blunt trailing edge.
     last = x.size - 1 - int(np.argmax(x[::-1]))
     if x[last] - x[last:].min() <= CLOSE:
         x, z = x[: last + 1], z[: last + 1]
-    if np.any(np.diff(x) <= 0.0):
-        fold = x[:-1][np.diff(x) <= 0.0][0]
-        raise AirfoilError(f"airfoil '{name}': a side folds back at x/c {fold:.3f}")
     if x[-2] >= 1.0:
         x = x / x[-1]
     angle = np.arccos(np.clip(1.0 - 2.0 * x, -1.0, 1.0))
     angle[-1] = np.pi
+    if np.any(np.diff(angle) <= 0.0):
+        fold = x[:-1][np.diff(angle) <= 0.0][0]
+        raise AirfoilError(f"airfoil '{name}': a side folds back at x/c {fold:.3f}")
     return angle, z
 
 
