@@ -223,3 +223,14 @@ def test_a_left_out_last_point_is_closed_and_said() -> None:
     with pytest.warns(AirfoilFrameWarning, match="its lower side ends at x = 0.975528, ahead of"):
         section = airfoil_from_coordinates("s", *thinned.T)
     np.testing.assert_allclose(section.thickness, whole.thickness, atol=2e-3)
+
+
+def test_corners_of_a_blunt_trailing_edge_may_be_oblique() -> None:
+    section = naca4(0.0, 0.4, 0.12)
+    points = contour(section) + np.outer(np.abs(np.arange(41) - 20) / 20.0, [0.0, 0.03])
+    points[20:, 1] -= 2.0 * np.arange(21) / 20.0 * 0.03
+    blunt = airfoil_from_coordinates("b", *points.T)
+    points[0, 0] += 0.003
+    oblique = airfoil_from_coordinates("b", *points.T)
+    assert blunt.thickness[-1] == pytest.approx(0.0625, abs=5e-4)
+    assert oblique.thickness[-1] == pytest.approx(blunt.thickness[-1], abs=5e-4)

@@ -13,11 +13,12 @@ CLOSE = 0.01
 _FEWEST = 10
 #: Larger coordinates are in no unit of a chord, and their squares would overflow.
 LARGEST = 1e6
-#: Ends of the sides up to so far apart in x are both the trailing edge [chord]: rounded alike, or
-#: the corners of a blunt one, which is higher than it is oblique.
-_ROUNDED, _BLUNT = 1e-4, 0.002
-#: Wider gaps are said, and the widest is closed where points are dense [chord].
-_OBLIQUE, _WIDEST_GAP = 0.02, 0.05
+#: Ends of the sides that are rounded alike are both at the trailing edge [chord].
+_ROUNDED = 1e-4
+#: So are the corners of a blunt one, which is higher than it is oblique, up to the first gap: each
+#: moves by half of it. Any other gap is closed, in silence up to the second, and up to the third
+#: where points are dense [chord].
+_OBLIQUE, _SILENT, _WIDEST_GAP = 0.01, 0.02, 0.05
 #: A gap of at most so many steps of the other side is one point that was left out.
 _STEPS = 1.5
 #: Largest angle by which a contour is turned onto its chord line [deg].
@@ -99,7 +100,7 @@ def closed(name: str, points: FloatArray) -> FloatArray:
     chord = float(np.ptp(points[:, 0]))
     upper_end, lower_end = points[0], points[-1]
     gap, base = np.abs(upper_end - lower_end) / chord
-    if gap <= max(_ROUNDED, min(_BLUNT, base)):
+    if gap <= max(_ROUNDED, min(_OBLIQUE, base)):
         return points
     lower_short = lower_end[0] < upper_end[0]
     side, short, tail = (
@@ -112,7 +113,7 @@ def closed(name: str, points: FloatArray) -> FloatArray:
     )
     if gap > max(_WIDEST_GAP, _STEPS * beside / chord):
         raise AirfoilError(f"{said}; the points between are missing")
-    if gap > _OBLIQUE:
+    if gap > _SILENT:
         warnings.warn(f"{said}; a straight line closes it", AirfoilFrameWarning, stacklevel=2)
     ends = [points, tail[None]] if lower_short else [tail[None], points]
     return np.concatenate(ends)
