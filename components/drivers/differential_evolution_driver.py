@@ -20,6 +20,7 @@ from propmdao.components.drivers.constrained_search import (
     Generation,
     SearchStopped,
 )
+from propmdao.components.drivers.equality_slack import EqualitySlack
 from propmdao.components.drivers.evaluation.candidate import Array, Candidate
 from propmdao.components.drivers.evaluation.design_problem import DesignProblem, require_bounds
 from propmdao.components.drivers.evaluation.model_run import ModelRun, put_outputs
@@ -54,6 +55,8 @@ class DifferentialEvolutionDriver(Driver):
       the model held when the driver started, so no result depends on what ran before it.
     - Every element of every constraint counts: lower, upper, both, or ``equals`` within
       ``equality_tolerance``. Violations are compared in driver scaling (``ref``, ``scaler``).
+    - Equalities are loose at first and tighten to that tolerance within 60 % of ``max_gen``
+      generations (Takahama and Sakai 2006), before which the search does not end as converged.
     - A design whose analysis raises ``om.AnalysisError``, or whose objective or constraints are
       not finite, loses against every other and the search goes on. Any other exception is an
       error in the model and ends the run.
@@ -89,7 +92,7 @@ class DifferentialEvolutionDriver(Driver):
     fail : bool
         True when no feasible design was found.
     message : str
-        Result of the search in a line, and why it ended.
+        Result of the search in a line, and why it ended; with the deviation left from equalities.
     """
 
     def __init__(self, **kwargs: Any) -> None:
@@ -189,10 +192,11 @@ class DifferentialEvolutionDriver(Driver):
 
     def _run_search(self, rng: np.random.Generator) -> bool:
         population = self._initial_population(rng)
+        slack = EqualitySlack(self._design_problem.equalities(), self.options["max_gen"])
         most_designs = len(population) * (self.options["max_gen"] + 1)
         with progress_bar(self, most_designs, "design") as progress:
             search = self._search = ConstrainedSearch(
-                self._evaluate_positions, self._improved, progress
+                self._evaluate_positions, slack, self._improved, progress
             )
             # A fixed variable has one position, so that no design is run twice.
             free = self._design_problem.upper > self._design_problem.lower
@@ -200,8 +204,8 @@ class DifferentialEvolutionDriver(Driver):
             try:
                 best, ending = search.run(
                     population,
+                    self.options["max_gen"],
                     bounds=[(0.0, float(is_free)) for is_free in free],
-                    maxiter=self.options["max_gen"],
                     rng=rng,
                     **{name: self.options[name] for name in passed_on},
                 )
@@ -240,9 +244,12 @@ class DifferentialEvolutionDriver(Driver):
         return int(size)
 
     def _open_checkpoint(self, file: Path) -> Checkpoint:
-        # When to stop is no part of it: a search may be resumed with more generations.
+        # When to stop is no part of it: a search may be resumed with more generations, unless they
+        # determine how fast the slack of its equalities shrinks.
         options = ("seed", "strategy", "init", "mutation", "recombination", "equality_tolerance")
         search = {name: self.options[name] for name in options}
+        if self._design_problem.equalities().any():
+            search["max_gen"] = self.options["max_gen"]
         search |= {"pop_size": self._population_size(), **self._design_problem.description()}
         checkpoint = Checkpoint(file, search)
         entry = checkpoint.first_success()
