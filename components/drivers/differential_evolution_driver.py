@@ -71,6 +71,8 @@ class DifferentialEvolutionDriver(Driver):
       The search, its files and its recorded cases are the same, whatever the number of workers,
       if the model computes the same numbers on one thread as on several. Each worker has one; an
       executor of your own needs `runtime.worker_processes.use_one_thread` as its initializer.
+    - With ``design_time_limit`` a process that takes longer over a design is ended and replaced;
+      the design has failed.
     - With ``designs_at_once`` the components of this package evaluate so many designs in one
       compiled call, which is what an accelerator is for; on two cores eight are a third faster than
       one after the other and workers twice as fast. A blade takes some 20 MB. Other components,
@@ -211,14 +213,16 @@ class DifferentialEvolutionDriver(Driver):
                 )
             except (KeyboardInterrupt, WorkerLostError) as error:
                 if search.best is not None:
-                    self._run_here(search.best.design)
+                    self._run_here(search.best.design, ModelRunner(self))
                 if self._checkpoint:
                     error.add_note(
                         f"The {search.evaluations} designs evaluated so far are in"
                         f" '{self._checkpoint.path}': run again to go on from there."
                     )
                 raise
-        self._run_here(best.design)
+        # Not here, where nothing would end a design that took too long: they may all have.
+        limited = self.options["design_time_limit"] is not None
+        self._run_here(best.design, self._runner if limited else ModelRunner(self))
         self.fail = not best.feasible
         self.message = search.summary(ending)
         if self.options["disp"]:
@@ -292,9 +296,9 @@ class DifferentialEvolutionDriver(Driver):
             put_outputs(self._problem().model, outputs)
             yield ModelRun(outputs, entry["failure"])
 
-    def _run_here(self, design: Array) -> None:
-        """Run the model of the Problem at a design and leave it there."""
-        self._next_case(design, ModelRunner(self).run([self._design_problem.start_at(design)]))
+    def _run_here(self, design: Array, runner: ModelRunner) -> None:
+        """Run the model at a design and leave that of the Problem there."""
+        self._next_case(design, runner.run([self._design_problem.start_at(design)]))
 
     def _next_case(self, design: Array, runs: Iterator[ModelRun]) -> Candidate:
         """Take the next run, which is the one at the design, and read it: one driver case."""
