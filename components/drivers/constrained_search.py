@@ -10,6 +10,7 @@ import numpy as np
 from scipy.optimize import NonlinearConstraint, OptimizeResult, differential_evolution
 from tqdm import tqdm
 
+from propmdao.components.drivers.equality_slack import EqualitySlack
 from propmdao.components.drivers.evaluation.candidate import Array, Candidate
 from propmdao.components.drivers.failure_reasons import FailureReasons
 
@@ -51,6 +52,9 @@ class ConstrainedSearch:
     evaluate : callable
         Function that takes a list of positions (n_variables,) and yields their candidates in that
         order, each with at least one violation.
+    slack : EqualitySlack
+        How loose the equality constraints are in each generation. The best candidate, the history
+        and what is improved know of none.
     improved : callable
         Function that is called with every candidate that is better than all before it and the
         number of evaluations so far, right after its evaluation.
@@ -74,6 +78,7 @@ class ConstrainedSearch:
     def __init__(
         self,
         evaluate: Callable[[list[Array]], Iterator[Candidate]],
+        slack: EqualitySlack,
         improved: Callable[[Candidate, int], None],
         progress: tqdm,
     ) -> None:
@@ -84,19 +89,24 @@ class ConstrainedSearch:
         self.last_failure = ""
         self.history: list[Generation] = []
         self._evaluate = evaluate
+        self._slack = slack
         self._improved = improved
         self._progress = progress
         self._memo: dict[bytes, Candidate] = {}
 
-    def run(self, population: Array, **scipy_options: Any) -> tuple[Candidate, str]:
+    def run(
+        self, population: Array, max_generations: int, **scipy_options: Any
+    ) -> tuple[Candidate, str]:
         """Search from an initial population.
 
         Parameters
         ----------
         population : (n_candidates, n_variables) array
             Initial positions.
+        max_generations : int
+            Number of generations after the initial one.
         **scipy_options
-            Further options of scipy's ``differential_evolution``: bounds, maxiter, rng, ...
+            Further options of scipy's ``differential_evolution``: bounds, rng, ...
 
         Returns
         -------
@@ -106,25 +116,36 @@ class ConstrainedSearch:
             "converged" when the population converged on a feasible candidate, "stopped" after the
             last generation, or the message of a `SearchStopped`.
         """
-        # `vectorized` hands over a whole generation at once. There is always a constraint and scipy
-        # calls it first, so that exceptions of the model do not pass through the objective call,
-        # which would rename them. Its own count of evaluations leaves out the infeasible ones.
+        n_shrinking = self._slack.n_shrinking
         try:
-            result = differential_evolution(
-                self._energies,
-                init=population,
-                constraints=NonlinearConstraint(self._violations, -np.inf, 0.0),
-                vectorized=True,
-                updating="deferred",
-                polish=False,
-                callback=self._end_generation,
-                **scipy_options,
-            )
+            # Scipy compares with violations that it has kept. So it begins anew, with a population
+            # whose candidates are all known, whenever the slack has changed.
+            for _ in range(n_shrinking):
+                population = self._scipy_run(population, 1, scipy_options).population
+            result = self._scipy_run(population, max_generations - n_shrinking, scipy_options)
             ending = "converged" if result.success else "stopped"
         except SearchStopped as stop:
             ending = str(stop)
         assert self.best is not None
         return self.best, ending
+
+    def _scipy_run(
+        self, population: Array, max_generations: int, options: dict[str, Any]
+    ) -> OptimizeResult:
+        # `vectorized` hands over a whole generation at once. There is always a constraint and scipy
+        # calls it first, so that exceptions of the model do not pass through the objective call,
+        # which would rename them. Its own count of evaluations leaves out the infeasible ones.
+        return differential_evolution(
+            self._energies,
+            init=population,
+            maxiter=max_generations,
+            constraints=NonlinearConstraint(self._violations, -np.inf, 0.0),
+            vectorized=True,
+            updating="deferred",
+            polish=False,
+            callback=self._end_generation,
+            **options,
+        )
 
     def summary(self, ending: str) -> str:
         """Return one line on the best candidate, the ending and the number of evaluations."""
@@ -136,11 +157,18 @@ class ConstrainedSearch:
             result = "every analysis failed"
         else:
             result = f"no feasible design, smallest total violation {best.violation.sum():.3g}"
+        if not np.isnan(best.deviation):
+            result += f", off its equalities by up to {best.deviation:.3g} (driver scaling)"
         reasons = f" ({self.reasons.text()})" if self.failed else ""
         return (
-            f"{result}; {ending} after {max(len(self.history) - 1, 0)} generations, "
+            f"{result}; {ending} after {self._n_ended} generations, "
             f"{self.evaluations} designs, {self.failed} of them failed{reasons}"
         )
+
+    @property
+    def _n_ended(self) -> int:
+        """Number of generations after the initial one that have ended."""
+        return max(len(self.history) - 1, 0)
 
     def _energies(self, positions: Array) -> Array:
         """Objectives at the columns of ``positions`` (n_variables, n_candidates)."""
@@ -150,11 +178,13 @@ class ConstrainedSearch:
         """Violations (n_constraints, n_candidates) at the columns of ``positions``, or at one."""
         if positions.ndim == 1:
             (candidate,) = self._candidates(positions[None])
-            return candidate.violation
+            return candidate.relaxed_violation(self._slack.at(self._n_ended))
         candidates = self._candidates(positions.T)
         if not self.history:  # scipy does not call back after the initial population
+            self._slack.begin(candidates)
             self._record_generation()
-        return np.stack([candidate.violation for candidate in candidates], axis=-1)
+        slack = self._slack.at(self._n_ended)
+        return np.stack([candidate.relaxed_violation(slack) for candidate in candidates], axis=-1)
 
     def _candidates(self, positions: Array) -> list[Candidate]:
         """Evaluate those of the positions (n_candidates, n_variables) that are new, in one call.

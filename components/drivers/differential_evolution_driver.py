@@ -20,6 +20,7 @@ from propmdao.components.drivers.constrained_search import (
     Generation,
     SearchStopped,
 )
+from propmdao.components.drivers.equality_slack import EqualitySlack
 from propmdao.components.drivers.evaluation.candidate import Array, Candidate
 from propmdao.components.drivers.evaluation.design_problem import DesignProblem, require_bounds
 from propmdao.components.drivers.evaluation.model_run import ModelRun, put_outputs
@@ -54,6 +55,8 @@ class DifferentialEvolutionDriver(Driver):
       the model held when the driver started, so no result depends on what ran before it.
     - Every element of every constraint counts: lower, upper, both, or ``equals`` within
       ``equality_tolerance``. Violations are compared in driver scaling (``ref``, ``scaler``).
+    - Equalities are loose at first and tighten to that tolerance within 60 % of ``max_gen``
+      generations (Takahama and Sakai 2006), before which the search does not end as converged.
     - A design whose analysis raises ``om.AnalysisError``, or whose objective or constraints are
       not finite, loses against every other and the search goes on. Any other exception is an
       error in the model and ends the run.
@@ -68,6 +71,8 @@ class DifferentialEvolutionDriver(Driver):
       The search, its files and its recorded cases are the same, whatever the number of workers,
       if the model computes the same numbers on one thread as on several. Each worker has one; an
       executor of your own needs `runtime.worker_processes.use_one_thread` as its initializer.
+    - With ``design_time_limit`` a process that takes longer over a design is ended and replaced;
+      the design has failed.
     - With ``designs_at_once`` the components of this package evaluate so many designs in one
       compiled call, which is what an accelerator is for; on two cores eight are a third faster than
       one after the other and workers twice as fast. A blade takes some 20 MB. Other components,
@@ -89,7 +94,7 @@ class DifferentialEvolutionDriver(Driver):
     fail : bool
         True when no feasible design was found.
     message : str
-        Result of the search in a line, and why it ended.
+        Result of the search in a line, and why it ended; with the deviation left from equalities.
     """
 
     def __init__(self, **kwargs: Any) -> None:
@@ -189,10 +194,11 @@ class DifferentialEvolutionDriver(Driver):
 
     def _run_search(self, rng: np.random.Generator) -> bool:
         population = self._initial_population(rng)
+        slack = EqualitySlack(self._design_problem.equalities(), self.options["max_gen"])
         most_designs = len(population) * (self.options["max_gen"] + 1)
         with progress_bar(self, most_designs, "design") as progress:
             search = self._search = ConstrainedSearch(
-                self._evaluate_positions, self._improved, progress
+                self._evaluate_positions, slack, self._improved, progress
             )
             # A fixed variable has one position, so that no design is run twice.
             free = self._design_problem.upper > self._design_problem.lower
@@ -200,21 +206,23 @@ class DifferentialEvolutionDriver(Driver):
             try:
                 best, ending = search.run(
                     population,
+                    self.options["max_gen"],
                     bounds=[(0.0, float(is_free)) for is_free in free],
-                    maxiter=self.options["max_gen"],
                     rng=rng,
                     **{name: self.options[name] for name in passed_on},
                 )
             except (KeyboardInterrupt, WorkerLostError) as error:
                 if search.best is not None:
-                    self._run_here(search.best.design)
+                    self._run_here(search.best.design, ModelRunner(self))
                 if self._checkpoint:
                     error.add_note(
                         f"The {search.evaluations} designs evaluated so far are in"
                         f" '{self._checkpoint.path}': run again to go on from there."
                     )
                 raise
-        self._run_here(best.design)
+        # Not here, where nothing would end a design that took too long: they may all have.
+        limited = self.options["design_time_limit"] is not None
+        self._run_here(best.design, self._runner if limited else ModelRunner(self))
         self.fail = not best.feasible
         self.message = search.summary(ending)
         if self.options["disp"]:
@@ -240,9 +248,12 @@ class DifferentialEvolutionDriver(Driver):
         return int(size)
 
     def _open_checkpoint(self, file: Path) -> Checkpoint:
-        # When to stop is no part of it: a search may be resumed with more generations.
+        # When to stop is no part of it: a search may be resumed with more generations, unless they
+        # determine how fast the slack of its equalities shrinks.
         options = ("seed", "strategy", "init", "mutation", "recombination", "equality_tolerance")
         search = {name: self.options[name] for name in options}
+        if self._design_problem.equalities().any():
+            search["max_gen"] = self.options["max_gen"]
         search |= {"pop_size": self._population_size(), **self._design_problem.description()}
         checkpoint = Checkpoint(file, search)
         entry = checkpoint.first_success()
@@ -285,9 +296,9 @@ class DifferentialEvolutionDriver(Driver):
             put_outputs(self._problem().model, outputs)
             yield ModelRun(outputs, entry["failure"])
 
-    def _run_here(self, design: Array) -> None:
-        """Run the model of the Problem at a design and leave it there."""
-        self._next_case(design, ModelRunner(self).run([self._design_problem.start_at(design)]))
+    def _run_here(self, design: Array, runner: ModelRunner) -> None:
+        """Run the model at a design and leave that of the Problem there."""
+        self._next_case(design, runner.run([self._design_problem.start_at(design)]))
 
     def _next_case(self, design: Array, runs: Iterator[ModelRun]) -> Candidate:
         """Take the next run, which is the one at the design, and read it: one driver case."""

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import math
 import os
+from typing import Any
 
 from openmdao.utils.options_dictionary import OptionsDictionary
 from scipy.stats import qmc
@@ -30,6 +32,7 @@ def declare_search_options(options: OptionsDictionary) -> None:
         "tol",
         1e-3,
         lower=0.0,
+        check_valid=_require_number,
         desc="Converged when the standard deviation of the population's scaled objectives is "
         "below tol times the magnitude of their mean.",
     )
@@ -39,6 +42,7 @@ def declare_search_options(options: OptionsDictionary) -> None:
         types=(int, float),
         allow_none=True,
         lower=0.0,
+        check_valid=_require_number,
         desc="Seconds after which no further design is evaluated; None: no limit.",
     )
     declare(
@@ -61,15 +65,43 @@ def declare_search_options(options: OptionsDictionary) -> None:
         "mutation",
         (0.5, 1.0),
         types=(float, tuple),
+        check_valid=_require_mutation,
         desc="Differential weight in [0, 2); from a pair each generation draws one in between.",
     )
-    declare("recombination", 0.7, lower=0.0, upper=1.0, desc="Crossover probability.")
+    declare(
+        "recombination",
+        0.7,
+        lower=0.0,
+        upper=1.0,
+        check_valid=_require_number,
+        desc="Crossover probability.",
+    )
     declare(
         "equality_tolerance",
         1e-4,
         lower=0.0,
-        desc="Largest deviation from `equals` that counts as met, in driver scaling.",
+        check_valid=_require_number,
+        desc="Largest deviation from `equals` that counts as met in the end, in driver scaling.",
     )
+
+
+def _require_number(name: str, value: Any) -> None:
+    # OpenMDAO's limits let a nan through.
+    if value is not None and math.isnan(value):
+        raise ValueError(f"{name} is nan; it is a number of at least 0")
+
+
+def _require_mutation(name: str, value: Any) -> None:
+    # Scipy sorts a pair without a word.
+    low_high = value if isinstance(value, tuple) else (value, value)
+    try:
+        valid = len(low_high) == 2 and 0.0 <= low_high[0] <= low_high[1] < 2.0
+    except TypeError:
+        valid = False
+    if not valid:
+        raise ValueError(
+            f"{name} is {value}; it is a number in [0, 2), or a pair (low, high) of such"
+        )
 
 
 def declare_file_options(options: OptionsDictionary) -> None:

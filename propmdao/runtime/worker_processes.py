@@ -8,7 +8,9 @@ import signal
 import threading
 from collections.abc import Callable, Generator, Iterable, Mapping
 from concurrent.futures import Executor, Future, ProcessPoolExecutor
-from typing import TypeVar
+from multiprocessing.connection import Connection
+from multiprocessing.process import BaseProcess
+from typing import Any, TypeVar
 
 import threadpoolctl
 
@@ -48,6 +50,37 @@ def start_workers(
         initializer=_begin,
         initargs=(dict(environment or {}),),
     )
+
+
+def start_process(
+    function: Callable[..., None], arguments: tuple[Any, ...], environment: Mapping[str, str]
+) -> tuple[BaseProcess, Connection]:
+    """Start one process like those of `start_workers`, which may be killed.
+
+    Parameters
+    ----------
+    function : callable
+        Function of a module, called in the process with its end of a connection and the arguments.
+    arguments : tuple
+        Arguments that pickle.
+    environment : mapping of str to str
+        Environment variables set in the process.
+
+    Returns
+    -------
+    process : multiprocessing.process.BaseProcess
+        The process.
+    connection : multiprocessing.connection.Connection
+        This end of the connection, on which an EOFError tells that the process has ended.
+    """
+    context = multiprocessing.get_context("spawn")
+    here, there = context.Pipe()
+    process = context.Process(
+        target=_begin_with, args=(function, there, arguments, dict(environment)), daemon=True
+    )
+    process.start()
+    there.close()
+    return process, here
 
 
 def use_one_thread() -> None:
@@ -104,6 +137,16 @@ def results_in_order(
     finally:
         for future in futures:
             future.cancel()
+
+
+def _begin_with(
+    function: Callable[..., None],
+    connection: Connection,
+    arguments: tuple[Any, ...],
+    environment: dict[str, str],
+) -> None:
+    _begin(environment)
+    function(connection, *arguments)
 
 
 def _begin(environment: dict[str, str]) -> None:

@@ -28,6 +28,9 @@ class Candidate:
         the analysis failed.
     failure : str
         Reason for which the analysis failed, empty when it did not.
+    deviation : float
+        Largest deviation from ``equals`` in driver scaling, tolerated or not; nan when the analysis
+        failed or nothing has to equal.
     """
 
     design: Array
@@ -35,6 +38,7 @@ class Candidate:
     energy: float
     violation: Array
     failure: str = ""
+    deviation: float = np.nan
 
     @classmethod
     def failed(cls, design: Array, n_constraints: int, failure: str) -> Candidate:
@@ -43,6 +47,12 @@ class Candidate:
         Its violation is infinite and not nan, which scipy takes for feasible.
         """
         return cls(design, np.nan, np.inf, np.full(n_constraints, np.inf), failure)
+
+    def relaxed_violation(self, slack: Array) -> Array:
+        """Violation where the bounds of every constraint element are wider by a slack."""
+        if self.failure:  # an infinite one, which no slack makes feasible
+            return self.violation
+        return np.maximum(self.violation - slack, 0.0)
 
     @property
     def feasible(self) -> bool:

@@ -5,9 +5,12 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 from openmdao.core.driver import Driver
 
 from propmdao.components.drivers.evaluation.candidate import Array, Candidate, constraint_violations
+
+Mask = NDArray[np.bool_]
 
 
 class DesignProblem:
@@ -118,10 +121,23 @@ class DesignProblem:
             constraint_violations(constraints[name], meta, self._equality_tolerance)
             for name, meta in self._driver._cons.items()
         ]
+        deviations = [
+            constraint_violations(constraints[name], meta, 0.0)
+            for name, meta in self._driver._cons.items()
+            if meta["equals"] is not None
+        ]
         # The leading zero is the constraint that the analysis succeeds.
         violation = np.concatenate([[0.0], *violations])
         (objective,), (energy,) = (v for values in (objectives, energies) for v in values.values())
-        return Candidate(design, float(objective), float(energy), violation)
+        deviation = float(np.concatenate(deviations).max()) if deviations else np.nan
+        return Candidate(design, float(objective), float(energy), violation, deviation=deviation)
+
+    def equalities(self) -> Mask:
+        """True (n_constraints,) where a violation of a candidate is of an equality."""
+        metas = self._driver._cons.values()
+        sizes = [meta["size"] for meta in metas]
+        are_equal = np.repeat([meta["equals"] is not None for meta in metas], sizes)
+        return np.concatenate([[False], are_equal.astype(bool)])
 
     def _failed(self, design: Array, failure: str) -> Candidate:
         n_constraints = sum(meta["size"] for meta in self._driver._cons.values())

@@ -13,8 +13,11 @@ from openmdao.utils.options_dictionary import OptionsDictionary
 from propmdao.components.drivers.evaluation.candidate import Array
 from propmdao.components.drivers.evaluation.design_batches import DesignBatches
 from propmdao.components.drivers.evaluation.model_run import ModelRun, put_outputs, record_run
+from propmdao.components.drivers.evaluation.time_limited_workers import TimeLimitedWorkers
 from propmdao.components.drivers.evaluation.worker_pool import WorkerPool
 from propmdao.runtime.worker_processes import start_workers
+
+LONGEST_TIME_LIMIT = 1_000_000  # s; the system waits no longer than 24 days in one piece
 
 
 class ModelRunner:
@@ -24,11 +27,15 @@ class ModelRunner:
     ----------
     driver : Driver
         Driver of a Problem after its final setup; its result counts the runs.
-    backend : WorkerPool, DesignBatches or None
+    backend : WorkerPool, TimeLimitedWorkers, DesignBatches or None
         Runs several designs at a time. None: the model runs here, at one design after the other.
     """
 
-    def __init__(self, driver: Driver, backend: WorkerPool | DesignBatches | None = None) -> None:
+    def __init__(
+        self,
+        driver: Driver,
+        backend: WorkerPool | TimeLimitedWorkers | DesignBatches | None = None,
+    ) -> None:
         self._driver, self._backend = driver, backend
 
     def run(self, starts: Iterable[Array]) -> Generator[ModelRun, None, None]:
@@ -98,6 +105,23 @@ def declare_runner_options(options: OptionsDictionary) -> None:
         lower=1,
         desc="Number of designs that components of JAX evaluate in one call of this process.",
     )
+    declare(
+        "design_time_limit",
+        None,
+        types=(int, float),
+        allow_none=True,
+        check_valid=_require_time,
+        desc="Seconds after which the process that runs the model is ended and the design has "
+        "failed; None: no limit. Compilation counts, in the first design of each process. With "
+        "n_workers 1 the model runs in one process beside this one.",
+    )
+
+
+def _require_time(name: str, value: float | None) -> None:
+    if value is not None and not 0.0 < value <= LONGEST_TIME_LIMIT:
+        raise ValueError(
+            f"{name} is {value}; it is a number of seconds above 0, at most {LONGEST_TIME_LIMIT}"
+        )
 
 
 @contextlib.contextmanager
@@ -133,7 +157,13 @@ def model_runner(driver: Driver) -> Iterator[ModelRunner]:
     requested += ["an executor"] if executor is not None else []
     if len(requested) > 1:
         raise ValueError(f"the model runs in one way; given are {' and '.join(requested)}")
-    if not requested:
+    limit = options["design_time_limit"]
+    if limit is not None and (executor is not None or at_once > 1):
+        raise ValueError(
+            f"design_time_limit {limit} ends processes of the driver's own, not {requested[0]};"
+            " give n_workers"
+        )
+    if not requested and limit is None:
         yield ModelRunner(driver)
         return
     if at_once > 1:
@@ -150,7 +180,12 @@ def model_runner(driver: Driver) -> Iterator[ModelRunner]:
     with contextlib.ExitStack() as stack:
         # A Problem that is set up clears the reports of its name: they would be this process's.
         folder = stack.enter_context(tempfile.TemporaryDirectory())
-        workers = stack.enter_context(start_workers(n_workers, {"OPENMDAO_WORKDIR": folder}))
+        environment = {"OPENMDAO_WORKDIR": folder}
+        if limit is not None:
+            limited = TimeLimitedWorkers(factory, model, n_workers, limit, environment)
+            yield ModelRunner(driver, stack.enter_context(contextlib.closing(limited)))
+            return
+        workers = stack.enter_context(start_workers(n_workers, environment))
         pool = WorkerPool(factory, model, workers)
         pool.build_ahead(n_workers)
         yield ModelRunner(driver, pool)

@@ -51,20 +51,14 @@ class WorkerPool:
     def __init__(
         self, factory: Callable[[], om.Problem], model: om.Group, executor: Executor
     ) -> None:
-        try:
-            self._task = pickle.dumps((factory, _layout(model)))
-        except Exception as error:  # pickle raises whatever an object's methods raise
-            raise ValueError(
-                f"problem_factory {factory!r} does not pickle ({error}); use a function that stands"
-                " at the top of a module, or functools.partial of one"
-            ) from error
+        self._task = pickled_task(factory, model)
         self._executor = executor
 
     def build_ahead(self, n_workers: int) -> None:
         """Have so many idle workers build the model, side by side instead of one by one."""
         with contextlib.suppress(BrokenExecutor):  # of which the first run tells
             for _ in range(n_workers):
-                self._executor.submit(_build_ahead, self._task)
+                self._executor.submit(build_model, self._task)
 
     def run(self, starts: Iterable[Array]) -> Iterator[ModelRun]:
         """Run the model from each of several outputs vectors.
@@ -86,10 +80,26 @@ class WorkerPool:
         Exception
             Any exception of the factory.
         """
-        for run in results_in_order(self._executor, partial(_run_model, self._task), starts):
-            if run.error is not None and not run.built:
-                raise run.error
+        for run in results_in_order(self._executor, partial(run_model, self._task), starts):
+            raise_unless_built(run)
             yield run
+
+
+def raise_unless_built(run: ModelRun) -> None:
+    """Raise the error that has kept a worker from building its model."""
+    if run.error is not None and not run.built:
+        raise run.error
+
+
+def pickled_task(factory: Callable[[], om.Problem], model: om.Group) -> bytes:
+    """Return what a worker needs to build its Problem, or a ValueError if it does not pickle."""
+    try:
+        return pickle.dumps((factory, _layout(model)))
+    except Exception as error:  # pickle raises whatever an object's methods raise
+        raise ValueError(
+            f"problem_factory {factory!r} does not pickle ({error}); use a function that stands at"
+            " the top of a module, or functools.partial of one"
+        ) from error
 
 
 def _layout(model: om.Group) -> dict[str, int]:
@@ -97,7 +107,7 @@ def _layout(model: om.Group) -> dict[str, int]:
     return {name: meta["size"] for name, meta in model._var_allprocs_abs2meta["output"].items()}
 
 
-def _run_model(task: bytes, start: Array) -> ModelRun:
+def run_model(task: bytes, start: Array) -> ModelRun:
     """Run the model of a task in this worker."""
     try:
         model = _problem(task).model
@@ -118,8 +128,9 @@ def _problem(task: bytes) -> om.Problem:
     return problem
 
 
-def _build_ahead(task: bytes) -> None:
-    with contextlib.suppress(Exception):  # of which the first run tells
+def build_model(task: bytes) -> None:
+    """Build the Problem of a task in this worker; of an error the first run tells."""
+    with contextlib.suppress(Exception):
         _problem(task)
 
 

@@ -96,6 +96,49 @@ def test_equality_holds_within_the_declared_tolerance(problem):
     assert_allclose(prob.get_val("f"), 0.5 * 0.999**2, atol=2e-5)
 
 
+def circle(x):
+    return x.sum(), x @ x
+
+
+def g11(x):
+    """Koziel and Michalewicz 1999."""
+    return x[0] ** 2 + (x[1] - 1.0) ** 2, x[1] - x[0] ** 2
+
+
+@pytest.mark.parametrize("seed", [1, 2])
+@pytest.mark.parametrize(
+    ("function", "bound", "equals", "optimum"), [(circle, 2.0, 2.0, -2.0), (g11, 1.0, 0.0, 0.75)]
+)
+def test_a_curved_equality_is_followed_to_the_optimum(
+    problem, seed, function, bound, equals, optimum
+):
+    prob = problem(function, [-bound] * 2, [bound] * 2, constraint={"equals": equals}, seed=seed,
+                   x0=[0.5, 0.5])  # fmt: skip
+    assert prob.run_driver().success
+    assert_allclose(prob.get_val("f"), optimum, atol=1e-3)
+    deviation = abs(prob.get_val("g")[0] - equals)
+    assert deviation <= 1e-4
+    assert f"off its equalities by up to {deviation:.3g}" in prob.driver.message
+
+
+def test_designs_run_once_while_an_equality_tightens(problem):
+    prob = problem(
+        lambda x: (x[0], x[:2].sum()), [-1.0, -1.0, 0.3], [1.0, 1.0, 0.3],
+        constraint={"equals": 0.7}, max_gen=10, pop_size=9, tol=0.0,
+    )  # fmt: skip
+    prob.run_driver()
+    designs = np.array(designs_of(prob))
+    assert len(np.unique(designs, axis=0)) == len(designs) - 1 <= 9 * 11
+    assert [row.generation for row in prob.driver.history] == list(range(11))
+
+
+def test_an_equality_that_no_design_meets_says_what_is_left(problem):
+    prob = problem(lambda x: (x[0], x @ x), [1.0], [2.0], constraint={"equals": 0.5}, max_gen=20)
+    assert not prob.run_driver().success
+    assert "no feasible design" in prob.driver.message
+    assert "off its equalities by up to 0.5" in prob.driver.message
+
+
 def test_fixed_and_free_elements_of_one_variable(problem):
     prob = problem(lambda x: (x @ x, x[:1]), [-1.0, 0.5], [1.0, 0.5], tol=1e-6)
     assert prob.run_driver().success

@@ -254,6 +254,19 @@ def test_a_constraint_that_is_not_there_is_named():
     assert prob.driver.iter_count == 0
 
 
+@pytest.mark.parametrize(
+    "wrong",
+    [{"mutation": (1.0, 0.5)}, {"mutation": 2.0}, {"mutation": (0.5,)}, {"mutation": np.nan},
+     {"mutation": (0.5, "1")}, {"equality_tolerance": np.nan}, {"equality_tolerance": -1e-4},
+     {"tol": np.nan}, {"time_budget": np.nan}, {"recombination": np.nan}],
+)  # fmt: skip
+def test_options_out_of_range_are_refused_in_a_line(wrong):
+    ((name, value),) = wrong.items()
+    with pytest.raises(ValueError, match=name) as raised:
+        DifferentialEvolutionDriver(**wrong)
+    assert str(value) in str(raised.value) and "\n" not in str(raised.value)
+
+
 def test_several_objectives():
     bounds = {"lower": 0.0, "upper": 1.0}
     with pytest.raises(RuntimeError, match="one scalar objective; the model has 2: f, h"):

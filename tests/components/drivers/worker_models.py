@@ -43,6 +43,8 @@ class Disc(om.ExplicitComponent):
         if trouble and x[1] > 1.2:
             if trouble == "value":
                 raise ValueError("chord_over_R must be positive")
+            if trouble == "hang":
+                time.sleep(1000.0)
             if trouble == "strange":
                 raise StrangeError("this", "that")
             if not self.options["flag"].exists():

@@ -1,0 +1,60 @@
+"""A time limit for every design: what hangs is ended, has failed, and the search goes on."""
+
+import functools
+import multiprocessing
+import time
+from concurrent.futures import ThreadPoolExecutor
+
+import numpy as np
+import pytest
+
+from propmdao.components import DifferentialEvolutionDriver
+
+
+@pytest.mark.parametrize("n_workers", [1, 2])
+def test_a_design_that_hangs_has_failed_and_the_search_goes_on(models, n_workers):
+    hanging = functools.partial(models.build, trouble="hang")
+    options = {"max_gen": 1, "pop_size": 6, "seed": 4}
+    prob = models.problem(hanging, n_workers=n_workers, design_time_limit=1.5, **options)
+    begin = time.monotonic()
+    prob.run_driver()
+    assert time.monotonic() - begin < 200.0
+    reasons = prob.driver.failure_reasons
+    assert reasons["took longer than 1.5 s"] > 0
+    assert prob.driver.history[-1].evaluations == 12
+    x = prob.get_val("x")
+    assert x[1] <= 1.2 and prob.get_val("f")[0] == pytest.approx(
+        100.0 * (x[1] - x[0] ** 2) ** 2 + (1.0 - x[0]) ** 2
+    )
+    assert not multiprocessing.active_children()
+
+
+def test_the_search_does_not_depend_on_a_limit_that_is_kept(models):
+    plain, limited = models.problem(), models.problem(n_workers=2, design_time_limit=100)
+    plain.run_driver()
+    limited.run_driver()
+    assert limited.driver.history == plain.driver.history
+    assert limited.get_val("x").tolist() == plain.get_val("x").tolist()
+    assert limited.get_val("g").tolist() == plain.get_val("g").tolist()
+
+
+def test_a_factory_that_fails_is_told_as_by_other_workers(models):
+    prob = models.problem(design_time_limit=100)
+    prob.driver.options["problem_factory"] = int
+    with pytest.raises(ValueError, match="must return a Problem that has been set up; it ret"):
+        prob.run_driver()
+
+
+def test_other_ways_to_run_have_no_limit(models):
+    with ThreadPoolExecutor(1) as executor:
+        prob = models.problem(executor=executor, design_time_limit=1)
+        with pytest.raises(ValueError, match="design_time_limit 1 ends .* not an executor"):
+            prob.run_driver()
+    with pytest.raises(ValueError, match="give problem_factory"):
+        models.problem(problem_factory=None, design_time_limit=1).run_driver()
+
+
+@pytest.mark.parametrize("limit", [0, -1.0, np.nan, np.inf])
+def test_a_limit_that_is_no_time_is_refused(limit):
+    with pytest.raises(ValueError, match=f"design_time_limit is {limit}; it is a number of sec"):
+        DifferentialEvolutionDriver(design_time_limit=limit)
