@@ -101,7 +101,7 @@ def test_twist_offset_turns_the_whole_blade():
         ({"rpm": -1.0}, "rpm must be 0 or more; it is -1"),
         ({"rpm": float("nan")}, "rpm must be 0 or more"),
         ({"thrust": 0.0}, "thrust must be positive; it is 0 N"),
-        ({"rpm": 4000.0, "speed": -2.0}, "speed must be 0 m/s or more; it is -2"),
+        ({"rpm": 4000.0, "speed": -2.0}, "speed must be within 0 ... 1000 m/s; it is -2"),
         ({"rpm": 4000.0, "density": 0.0}, "density must be positive; it is 0 kg/m3"),
         ({"rpm": 4000.0, "observers": arc(0.1, [0.0])}, "observer 1 is inside the source region"),
         ({"rpm": 40000.0}, "relative tip Mach number must be below 1"),

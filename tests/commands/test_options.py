@@ -14,11 +14,11 @@ OPTIONS = {quantity.option: quantity for quantity in ASKED.values() if quantity.
 COMMANDS = ("analyze", "sweep", "flyover", "export")
 #: Options that are of a command, not of what is asked of an analysis.
 OTHERS = {
-    "analyze": "--polar --json --wav --seconds --full-scale --figures",
+    "analyze": "--polar --json --wav --seconds --full-scale --figures --figure-at --figure-dba",
     "sweep": "--points --samples --seed --workers --out",
     "flyover": "--height --sideline --microphone --duration --no-absorption --absorption --json"
     " --out --figures --wav --full-scale",
-    "export": "--to --section",
+    "export": "--to --section --units",
 }
 LISTENING = "--arc --point --circle --hemisphere --grid"
 SURROUNDINGS = "--ground --level --absorption"
