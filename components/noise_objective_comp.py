@@ -9,7 +9,7 @@ import numpy.typing as npt
 import openmdao.api as om
 from scipy.special import logsumexp, softmax
 
-from propmdao.components.bases.refusals import require_numbers, require_real
+from propmdao.components.bases.refusals import require_numbers
 
 _PER_DB = np.log(10.0) / 10.0
 
@@ -89,7 +89,6 @@ class NoiseObjectiveComp(om.ExplicitComponent):
         self.declare_partials("soft_maximum_db", "level_db")
 
     def compute(self, inputs: Any, outputs: Any) -> None:
-        require_real(self)
         require_numbers("input ", inputs)
         outputs["soft_maximum_db"] = soft_maximum_db(inputs["level_db"], self.options["exponent"])
 

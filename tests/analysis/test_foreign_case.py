@@ -20,6 +20,7 @@ from propmdao.records.air import Air
 from propmdao.records.loads import PointLoads
 from propmdao.records.panels import Panels
 from propmdao.records.states import RotorState
+from propmdao.runtime.finite import NotFiniteError
 
 OMEGA, N_HARMONICS = 100.0, 3
 OBSERVERS = np.array([[3.0, 0.0, -2.0], [4.0, 0.0, -2.0]])
@@ -365,5 +366,5 @@ def test_pressures_that_are_no_numbers_are_refused(make_case, monkeypatch):
         return np.full((len(observers.position), times.size), np.nan)
 
     monkeypatch.setattr(foreign_case, "source_history", broken)
-    with pytest.raises(WopwopFileError, match="256 of 256 pressures at 'microphones' could not be"):
+    with pytest.raises(NotFiniteError, match="thickness noise of observer 1, 0 s is nan, in case"):
         run_case(make_case())

@@ -178,12 +178,3 @@ def test_complex_step_is_refused_in_one_line(propeller, small):
     prob.set_complex_step_mode(False)
     with pytest.raises(RuntimeError, match=message):
         prob.check_partials(method="cs", out_stream=None)
-
-
-def test_complex_step_of_the_soft_maximum_is_refused(problem_of):
-    prob = om.Problem(reports=False)
-    prob.model.add_subsystem("comp", NoiseObjectiveComp(shape=3), promotes=["*"])
-    prob.setup(force_alloc_complex=True)
-    prob.run_model()
-    with pytest.raises(RuntimeError, match="NoiseObjectiveComp has exact derivatives"):
-        prob.check_partials(method="cs", out_stream=None)
