@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import re
-import shlex
 import subprocess
 import sys
 import tomllib
@@ -15,8 +13,6 @@ from typing import Any
 import pytest
 
 import propmdao
-from propmdao.commands import program
-from propmdao.formats.propellers import load_propeller
 from propmdao.propeller.catalog import airfoil_file, airfoil_names, catalog_names, propeller_file
 
 OPENMDAO_NAMES = {
@@ -114,36 +110,3 @@ def test_the_command_line_does_without_openmdao_and_matplotlib() -> None:
         "assert not {'openmdao', 'matplotlib'} & set(sys.modules)"
     )
     subprocess.run([sys.executable, "-c", code], check=True, capture_output=True)
-
-
-def readme_blocks(checkout: Path, *languages: str) -> list[str]:
-    """The README's code blocks in the languages given."""
-    text = (checkout / "README.md").read_text(encoding="utf-8")
-    return re.findall(rf"```(?:{'|'.join(languages)})\n(.*?)```", text, re.DOTALL)
-
-
-def readme_commands(checkout: Path) -> list[list[str]]:
-    """Every line of the README's code blocks in the shell's language, as words."""
-    lines = "".join(readme_blocks(checkout, "sh", "bash", "console")).splitlines()
-    return [words for line in lines if (words := shlex.split(line, comments=True))]
-
-
-def test_make_targets_in_the_readme_exist(checkout: Path) -> None:
-    targets = re.findall(r"^([\w-]+):", (checkout / "Makefile").read_text(), re.MULTILINE)
-    named = [words[1] for words in readme_commands(checkout) if words[0] == "make"]
-    assert {"install", "study", "test"} <= set(named)
-    assert set(named) <= set(targets)
-
-
-def test_command_lines_in_the_readme_parse(checkout: Path) -> None:
-    commands = [words for words in readme_commands(checkout) if words[0].endswith("propmdao")]
-    assert commands
-    for words in commands:
-        if "--help" not in words:
-            program.build_parser().parse_args(words[1:])
-
-
-def test_the_propeller_file_in_the_readme_can_be_read(checkout: Path, tmp_path: Path) -> None:
-    (text,) = readme_blocks(checkout, "toml")
-    (tmp_path / "blade.toml").write_text(text)
-    assert load_propeller(tmp_path / "blade.toml").n_blades == 3

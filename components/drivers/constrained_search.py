@@ -12,7 +12,7 @@ from tqdm import tqdm
 
 from propmdao.components.drivers.equality_slack import EqualitySlack
 from propmdao.components.drivers.evaluation.candidate import Array, Candidate
-from propmdao.components.drivers.failure_reasons import FailureReasons
+from propmdao.components.drivers.evaluation.failure_reasons import FailureReasons
 
 
 @dataclasses.dataclass(frozen=True)

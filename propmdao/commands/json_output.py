@@ -5,8 +5,6 @@ from __future__ import annotations
 import json
 from typing import Any
 
-from propmdao.runtime.finite import require_finite
-
 
 def print_json(value: Any) -> None:
     """Print a value.
@@ -31,6 +29,8 @@ def _plain(value: Any, name: str) -> Any:
     if isinstance(value, list):
         return [_plain(item, name) for item in value]
     if isinstance(value, float):
+        from propmdao.runtime.finite import require_finite  # numpy: not for --help
+
         require_finite(name, value)
         return value + 0.0
     return value

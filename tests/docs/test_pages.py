@@ -94,6 +94,7 @@ def test_all_blocks_are_run_or_known(checkout: Path) -> None:
             page = str(path.relative_to(checkout))
             assert page in (*PAGES, "docs/plugging_in.md"), page
     assert len(PROPMDAO) > 8
+    assert {("install",), ("study",), ("test",)} <= {tuple(words) for words in MAKE}
     programs = {words[0] for words in commands()}
     assert programs <= {"propmdao", ".venv/bin/propmdao", "python", "make"}
     every = (checkout / "studies").glob("*/*.py")

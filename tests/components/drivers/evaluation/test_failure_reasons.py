@@ -1,6 +1,6 @@
 """Reasons of failed designs are counted, most frequent first, and short."""
 
-from propmdao.components.drivers.failure_reasons import LONGEST_REASON, FailureReasons
+from propmdao.components.drivers.evaluation.failure_reasons import LONGEST_REASON, FailureReasons
 
 
 def reasons_of(*failures):
