@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import json
-import os
 import pathlib
 from typing import Any
 
 from openmdao.core.driver import Driver
+
+from propmdao.runtime.output_files import replacing
 
 
 def write_best_design(path: pathlib.Path, driver: Driver, evaluations: int) -> None:
@@ -44,6 +45,5 @@ def write_best_design(path: pathlib.Path, driver: Driver, evaluations: int) -> N
         ),
         "constraints": with_units(driver._cons, driver.get_constraint_values(driver_scaling=False)),
     }
-    partial = path.with_name(path.name + ".partial")
-    partial.write_text(json.dumps(content, indent=2) + "\n", encoding="utf-8")
-    os.replace(partial, path)
+    with replacing(path) as file:
+        file.write_text(json.dumps(content, indent=2) + "\n", encoding="utf-8")
