@@ -15,7 +15,6 @@ from typing import Any
 # none.
 POINT, AIR, CHANGE = "point", "point.air", "change"
 LOADS, SELF_NOISE, FIDELITY = "model.loads", "model.noise.broadband", "model.fidelity"
-LISTENING = "listening"
 
 
 @dataclasses.dataclass(frozen=True)
