@@ -22,7 +22,12 @@ from propmdao.commands.options import (
     asked_of,
     number,
 )
-from propmdao.commands.output_files import require_figures, require_output, save_figures
+from propmdao.commands.output_files import (
+    require_matplotlib,
+    require_output,
+    require_output_folder,
+    save_figures,
+)
 from propmdao.commands.warning_lines import warning_lines
 from propmdao.formats.endings import POLAR_READERS, described
 from propmdao.records.quantities import ASKED
@@ -207,7 +212,7 @@ def _check(options: argparse.Namespace) -> None:
     if options.wav is not None:
         require_output("--wav", options.wav, ".wav")
     if options.figures is not None:
-        require_figures("--figures", options.figures)
+        require_output_folder("--figures", options.figures)
 
 
 def _check_observers(options: argparse.Namespace, n_observers: int) -> None:
@@ -221,6 +226,8 @@ def _check_observers(options: argparse.Namespace, n_observers: int) -> None:
         from propmdao.analysis.sounds import require_sound
 
         require_sound(n_observers, options.seconds, options.full_scale)
+    if options.figures is not None:
+        require_matplotlib("--figures")
 
 
 def _write(options: argparse.Namespace, analysis: Analysis) -> dict[str, Any]:

@@ -17,7 +17,12 @@ from propmdao.commands.options import (
     asked_of,
     number,
 )
-from propmdao.commands.output_files import require_figures, require_output, save_figures
+from propmdao.commands.output_files import (
+    require_matplotlib,
+    require_output,
+    require_output_folder,
+    save_figures,
+)
 from propmdao.commands.warning_lines import warning_lines
 from propmdao.runtime.output_files import replacing
 
@@ -114,7 +119,7 @@ def _flyover(options: argparse.Namespace) -> None:
         if path is not None:
             require_output(option, path, ending)
     if options.figures is not None:
-        require_figures("--figures", options.figures)
+        require_output_folder("--figures", options.figures)
     if not options.speed > 0.0:
         raise ValueError(f"--speed of a flyover must be positive [m/s]; it is {options.speed:g}")
     air = air_of(options)
@@ -136,6 +141,8 @@ def _flyover(options: argparse.Namespace) -> None:
     if options.wav is not None:
         require_sound(1, duration, options.full_scale)
     Request.of(**asked)
+    if options.figures is not None:
+        require_matplotlib("--figures")
     from propmdao.analysis.flyovers import fly_over
     from propmdao.analysis.single_point import analyze
 

@@ -61,24 +61,23 @@ def require_output_folder(option: str, folder: Path) -> None:
         require_folder(folder)
 
 
-def require_figures(option: str, folder: Path) -> None:
-    """Refuse figures that cannot be written, or where matplotlib, an extra, is not installed.
+def require_matplotlib(option: str) -> None:
+    """Refuse figures where matplotlib, an extra, is not installed.
+
+    Asked last: what is wrong with a request is wrong everywhere, what is missing is missing here.
 
     Parameters
     ----------
     option : str
         Option that asks for figures.
-    folder : Path
-        Folder of the figures.
 
     Raises
     ------
     ValueError
-        If they cannot be drawn or written.
+        If it is not installed.
     """
     if importlib.util.find_spec("matplotlib") is None:
         raise ValueError(f"{option} needs matplotlib: pip install 'propmdao[plots]'")
-    require_output_folder(option, folder)
 
 
 def save_figures(folder: Path, figures: Mapping[str, Figure]) -> list[str]:

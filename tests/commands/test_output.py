@@ -122,3 +122,24 @@ def test_a_failed_export_is_one_line_and_leaves_the_file(
         resource.setrlimit(resource.RLIMIT_FSIZE, (soft, hard))
     assert f"{path}: cannot be written: " in line
     assert path.read_text() == "good" and len(list(tmp_path.iterdir())) == 1
+
+
+@pytest.mark.parametrize(
+    "line",
+    [
+        "analyze {p} --rpm 4000 --arc 2 0 --figures new",
+        "flyover {p} --rpm 4000 --speed 8 --height 9 --figures new",
+    ],
+)
+def test_figures_without_matplotlib_are_one_line_before_the_analysis(
+    recorder: Any,
+    refused: Callable[..., str],
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    line: str,
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr("importlib.util.find_spec", lambda name: None)
+    message = refused(*line.format(p=PROPELLER).split())
+    assert "--figures needs matplotlib: pip install 'propmdao[plots]'" in message
+    assert recorder.asked == [] and not (tmp_path / "new").exists()
