@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import inspect
 from collections.abc import Callable
 from functools import cache, wraps
+from itertools import zip_longest
 from typing import Any, ParamSpec, TypeVar
 
 import jax
 import jax.extend.core
+import numpy as np
 
 import propmdao.runtime.jax_setup  # noqa: F401 - before any array is made
 
@@ -30,8 +33,9 @@ def compiled(
 ) -> Callable[_Parameters, _Result]:
     """``jax.jit`` for functions that are called by themselves as well as within others.
 
-    By itself, a function is compiled as `_options` have it. Within another one, or where JAX
-    differentiates or maps it, it is a part of that, compiled as that is.
+    By itself, a function is compiled as `_options` have it, once for numbers and arrays of one
+    element alike. Within another one, or where JAX differentiates or maps it, it is a part of that,
+    compiled as that is.
 
     Parameters
     ----------
@@ -49,14 +53,36 @@ def compiled(
     as_part = jax.jit(function, **static)
 
     @cache
-    def alone() -> Callable[_Parameters, _Result]:
+    def alone() -> Callable[..., _Result]:
         return jax.jit(function, compiler_options=_options(), **static)
+
+    parameters = list(inspect.signature(function).parameters)
+    names = {static_argnames} if isinstance(static_argnames, str) else set(static_argnames or ())
+    names |= {parameters[place] for place in static_argnums or ()}
 
     @wraps(function)
     def call(*args: _Parameters.args, **kwargs: _Parameters.kwargs) -> _Result:
-        return (alone() if _place_in_traces() == _OUTSIDE else as_part)(*args, **kwargs)
+        if _place_in_traces() != _OUTSIDE:
+            return as_part(*args, **kwargs)
+        places = zip_longest(parameters[: len(args)], args)  # *args of a function have no names
+        positional = [a if k in names else _of_one_type(a) for k, a in places]
+        named = {k: a if k in names else _of_one_type(a) for k, a in kwargs.items()}
+        return alone()(*positional, **named)
 
     return call
+
+
+def _of_one_type(argument: Any) -> Any:
+    """Make numbers arrays: JAX compiles a function anew for each place that holds a plain float."""
+    return jax.tree.map(_as_array, argument)
+
+
+def _as_array(leaf: Any) -> Any:
+    if type(leaf) is float:
+        return np.float64(leaf)
+    if isinstance(leaf, jax.Array) and leaf.weak_type:  # made of plain floats alone
+        return jax.lax.convert_element_type(leaf, np.dtype(leaf.dtype))
+    return leaf
 
 
 @cache

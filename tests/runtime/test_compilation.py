@@ -4,6 +4,7 @@ from functools import partial
 
 import jax
 import jax.numpy as jnp
+import numpy as np
 
 from propmdao.runtime.compilation import compiled
 
@@ -35,3 +36,19 @@ def test_compiled_once():
     for x in range(5):
         assert f(float(x)) == 2.0 * x
     assert len(traced) == 1
+
+
+def test_numbers_and_arrays_share_what_is_compiled():
+    traced = []
+
+    @partial(compiled, static_argnames="power")
+    def f(pair, power):
+        traced.append(power)
+        return pair["x"] * pair["y"] ** power
+
+    half = jnp.asarray(0.5)
+    for x, y in ((3.0, 2.0), (np.float64(3.0), 2.0), (3.0 * half * 2.0, jnp.asarray(2.0))):
+        assert f({"x": x, "y": y}, 2.0) == 12.0
+    assert traced == [2.0]
+    assert f({"x": 3.0, "y": 2.0}, power=2.0) == 12.0
+    assert {type(power) for power in traced} == {float}  # what is static stays as it is
