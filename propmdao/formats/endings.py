@@ -72,6 +72,10 @@ _UIUC = FileFormat(
 #: Readers of propellers: functions of a path that return a `Propeller`.
 PROPELLER_READERS = {
     ".toml": FileFormat("propeller file", "propmdao.formats.toml_files:read_toml"),
+    ".pe0": FileFormat("geometry file of APC", "propmdao.formats.blade_tables.pe0:read_pe0"),
+    ".csv": FileFormat(
+        "table of a blade with heads", "propmdao.formats.blade_tables.csv_table:read_csv"
+    ),
     ".txt": _UIUC,
     ".dat": _UIUC,
 }
