@@ -15,8 +15,8 @@ from pathlib import Path
 import numpy as np
 from scipy.interpolate import CubicSpline
 
-from propmdao.formats.blade_tables.pe0_table import read_pe0_table
 from propmdao.formats.blade_tables.pe0 import propeller_of_table
+from propmdao.formats.blade_tables.pe0_table import read_pe0_table
 from propmdao.formats.toml_files import write_toml
 from propmdao.propeller.description import Propeller
 

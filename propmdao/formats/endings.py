@@ -66,7 +66,7 @@ class PolarReader(FileFormat):
 
 _UIUC = FileFormat(
     "geometry file of UIUC, named like apcsf_9x4.7_geom.txt",
-    "propmdao.formats.uiuc:read_named_uiuc_geometry",
+    "propmdao.formats.blade_tables.uiuc:read_named_uiuc_geometry",
 )
 
 #: Readers of propellers: functions of a path that return a `Propeller`.

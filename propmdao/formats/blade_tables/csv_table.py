@@ -140,22 +140,22 @@ def _one_of(
     named: dict[str, Column], relative: dict[str, float], absolute: str, radius: float
 ) -> FloatArray:
     """A length over the tip radius, from whichever columns there are."""
-    found = {key: unit * named[key].numbers() for key, unit in relative.items() if key in named}
+    forms = {key: unit * named[key].numbers() for key, unit in relative.items() if key in named}
     column = named.get(absolute)
     if column is not None and column.length is not None:
-        found[absolute] = column.length / radius * column.numbers()
-    elif column is not None and not found:
+        forms[absolute] = column.length / radius * column.numbers()
+    elif column is not None and not forms:
         raise PropellerError(
             f"column '{column.head}' needs a unit, as '{absolute} [mm]' or '{absolute}_in', or to "
             f"be '{next(iter(relative))}'"
         )
-    if not found:
+    if not forms:
         raise PropellerError(
             f"a column is missing: {', '.join(map(repr, relative))} or '{absolute}' with a unit"
         )
-    first, *others = found.values()
+    first, *others = forms.values()
     if not all(np.allclose(first, other, rtol=_ROUNDED) for other in others):
-        raise PropellerError(f"columns of {' and '.join(found)} contradict each other")
+        raise PropellerError(f"columns of {' and '.join(forms)} contradict each other")
     return first
 
 

@@ -40,6 +40,9 @@ _AIRFOILS = {
 }
 _ALL_ORDINATES_SCALED = ("clarky",)
 _QUARTER = 0.25
+#: Chord over tip radius of the tip, at least: the last row of a table has next to none, and faces
+#: of a surface need an area.
+_TIP_CHORD = 0.005
 
 
 def read_pe0(path: str | os.PathLike[str]) -> Propeller:
@@ -122,7 +125,7 @@ def propeller_of_table(table: Pe0Table, name: str) -> Propeller:
         diameter=2.0 * float(tip),
         n_blades=table.n_blades,
         r_over_R=table.radius / tip,
-        c_over_R=table.chord / tip,
+        c_over_R=np.where(closing, np.maximum(table.chord / tip, _TIP_CHORD), table.chord / tip),
         beta_deg=np.degrees(beta),
         airfoils=airfoils,
         thickness_over_chord=table.thickness_ratio,

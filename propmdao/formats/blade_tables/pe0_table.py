@@ -104,7 +104,7 @@ def read_pe0_table(path: str | os.PathLike[str]) -> Pe0Table:
     Returns
     -------
     Pe0Table
-        Its contents.
+        Contents of the file.
 
     Raises
     ------
@@ -185,12 +185,12 @@ def _rows(path: Path, lines: list[str], names: list[str], first: int) -> FloatAr
 
 def _stated(path: Path, text: str, pattern: str) -> float | None:
     """A positive number of the file's text, None where it is not said."""
-    found = re.search(pattern, text, re.M)
-    if found is None:
+    stated = re.search(pattern, text, re.M)
+    if stated is None:
         return None
-    value = finite_number(found[1], PropellerError, f"{path}: {clipped(found[0])}")
+    value = finite_number(stated[1], PropellerError, f"{path}: {clipped(stated[0])}")
     if not value > 0.0:
-        raise PropellerError(f"{path}: '{clipped(found[0])}' must be positive")
+        raise PropellerError(f"{path}: '{clipped(stated[0])}' must be positive")
     return value
 
 
@@ -204,8 +204,8 @@ def _number(path: Path, text: str, pattern: str, name: str) -> float:
 
 def _airfoil(path: Path, text: str, number: int) -> tuple[float, str]:
     """Radius [m] and name of an end of the airfoils' transition."""
-    found = re.search(_AIRFOIL.format(number), text, re.M)
-    if found is None:
+    stated = re.search(_AIRFOIL.format(number), text, re.M)
+    if stated is None:
         raise PropellerError(f"{path}: 'AIRFOIL{number}: radius, name' is missing")
     where = f"{path}: AIRFOIL{number}"
-    return _INCH * finite_number(found[1], PropellerError, where), found[2]
+    return _INCH * finite_number(stated[1], PropellerError, where), stated[2]

@@ -50,7 +50,7 @@ def read_rotor_folder(path: Path, columns: list[Column]) -> Propeller:
         File of the rotor: Rtip and Rhub [m], B, blade. Files that it names stand beside it;
         contours of airfoils beside it, or in the folder ``airfoils`` beside its own.
     columns : list of Column
-        Its columns.
+        Columns of that file.
 
     Returns
     -------
@@ -153,7 +153,7 @@ def _airfoils(path: Path, name: str, hub: float) -> list[tuple[float, str]]:
     for place, cell in zip(position.numbers(), contour.cells, strict=True):
         if not 0.0 <= place <= 1.0:
             raise PropellerError(f"{file}: positions must be within 0 ... 1; one is {place:g}")
-        pairs.append((float(hub + place * (1.0 - hub)), _airfoil(path.parent, cell)))
+        pairs.append((min(float(hub + place * (1.0 - hub)), 1.0), _airfoil(path.parent, cell)))
     return pairs
 
 
@@ -163,7 +163,7 @@ def _airfoil(folder: Path, contour: str) -> str:
         return find_airfoil(Path(contour).stem).name
     except AirfoilError:
         beside = [folder / contour, folder.parent / "airfoils" / contour]
-        found = next((file for file in beside if file.is_file()), None)
-    if found is None:
+        path = next((file for file in beside if file.is_file()), None)
+    if path is None:
         raise PropellerError(f"{folder}: there is no contour file '{contour}', nor beside it")
-    return str(found)
+    return str(path)

@@ -55,18 +55,18 @@ def in_own_units(data: dict[str, Any]) -> dict[str, Any]:
         If an entry has two forms, is no length, or the last radius is not half the diameter.
     """
     own = {key: value for key, value in data.items() if key not in sum(FORMS.values(), ())}
-    given: dict[str, str] = {}
+    keys: dict[str, str] = {}
     for key, forms in FORMS.items():
         present = [form for form in forms if form in data]
         if len(present) > 1:
             raise PropellerError(f"{' and '.join(present)} are the same thing; give one of them")
         if present:
-            given[key] = present[0]
-    lengths = {key: _length(form, data[form]) for key, form in given.items() if form != key}
-    own |= {key: data[form] for key, form in given.items() if form == key}
+            keys[key] = present[0]
+    lengths = {key: _length(form, data[form]) for key, form in keys.items() if form != key}
+    own |= {key: data[form] for key, form in keys.items() if form == key}
     if not lengths:
         return own
-    radius = _tip(given, own, lengths)
+    radius = _tip(keys, own, lengths)
     require_asked("diameter", 2.0 * radius, PropellerError)
     own["diameter"] = 2.0 * radius
     if "r_over_R" in lengths:
@@ -76,12 +76,12 @@ def in_own_units(data: dict[str, Any]) -> dict[str, Any]:
             own[key] = lengths[key] / radius
     if "beta_deg" in lengths:
         if "r_over_R" not in own:
-            raise PropellerError(f"{given['beta_deg']} needs stations: r_over_R or radius_mm")
+            raise PropellerError(f"{keys['beta_deg']} needs stations: r_over_R or radius_mm")
         stations = radius * checks.stations(own["r_over_R"])
         pitch = lengths["beta_deg"]
         if pitch.size not in (1, stations.size):
             raise PropellerError(
-                f"{given['beta_deg']} has {pitch.size} values for {stations.size} stations"
+                f"{keys['beta_deg']} has {pitch.size} values for {stations.size} stations"
             )
         own["beta_deg"] = np.degrees(np.arctan(pitch / (2.0 * np.pi * stations)))
     return own
@@ -144,18 +144,18 @@ def _length(form: str, value: Any) -> FloatArray:
     return unit * values
 
 
-def _tip(given: dict[str, str], own: dict[str, Any], lengths: dict[str, FloatArray]) -> float:
+def _tip(keys: dict[str, str], own: dict[str, Any], lengths: dict[str, FloatArray]) -> float:
     """Tip radius [m], by the diameter or the last station."""
     stations = lengths.get("r_over_R")
-    if "diameter" not in given:
+    if "diameter" not in keys:
         if stations is None:
             raise PropellerError("missing key 'diameter' (m), or diameter_mm or diameter_inch")
         return float(stations[-1])
     diameter = lengths["diameter"][0] if "diameter" in lengths else own["diameter"]
-    radius = 0.5 * checks.number(given["diameter"], diameter)
+    radius = 0.5 * checks.number(keys["diameter"], diameter)
     if stations is not None and abs(stations[-1] - radius) > _ROUNDED * radius:
         raise PropellerError(
-            f"{given['r_over_R']} must end at the tip, half of {given['diameter']}; it ends at "
+            f"{keys['r_over_R']} must end at the tip, half of {keys['diameter']}; it ends at "
             f"{stations[-1] / radius:.4g} of it"
         )
     return radius
