@@ -75,9 +75,8 @@ def test_blades_of_the_makers_tables_are_those_tables(name: str, reference_data:
         ("r_over_R", 1e-5), ("c_over_R", 1e-5), ("beta_deg", 1e-3), ("sweep_over_R", 1e-5),
         ("rake_over_R", 1e-5), ("thickness_over_chord", 1e-4),
     ):  # fmt: skip
-        np.testing.assert_allclose(
-            getattr(entry, key), getattr(whole, key)[kept], atol=0.51 * digit
-        )
+        own, of_table = getattr(entry, key), getattr(whole, key)[kept]
+        np.testing.assert_allclose(own, of_table, atol=0.51 * digit)
     assert 15 <= len(kept) < 0.6 * whole.r_over_R.size
 
 
