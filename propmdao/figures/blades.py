@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from propmdao.figures.style import BLADE_COLORS, GRID, LINE_STYLES, page
-from propmdao.geometry.blade import span_interpolation
+from propmdao.geometry.blade import Blade, span_interpolation
 from propmdao.propeller.airfoils.airfoil import CHORD_FRACTION
 from propmdao.propeller.description import Propeller
 
@@ -92,8 +92,7 @@ def _draw_sections(
 
 def _sections(propeller: Propeller) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float64]]:
     """Camber and thickness over chord, (n_stations, n_chord), as the blade has them."""
-    camber, thickness = propeller.sections()
-    if propeller.thickness_over_chord is not None:
-        scale = propeller.thickness_over_chord / thickness.max(axis=1)
-        thickness = thickness * scale[:, None]
-    return camber, thickness
+    blade = Blade.from_propeller(propeller)
+    camber = blade.camber_over_chord[:, None] * blade.camber_shape
+    thickness = blade.thickness_over_chord[:, None] * blade.thickness_shape
+    return np.asarray(camber), np.asarray(thickness)

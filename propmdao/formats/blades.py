@@ -91,6 +91,7 @@ def export_csv(path: str | Path, propeller: Propeller) -> int:
         "camber_over_chord": np.asarray(blade.camber_over_chord),
         "sweep_over_R": propeller.sweep_over_R,
         "rake_over_R": propeller.rake_over_R,
+        "n_blades": np.full(propeller.r_over_R.size, propeller.n_blades),
     }
     with replacing(path) as file, file.open("w", newline="", encoding="utf-8") as stream:
         writer = csv.writer(stream)

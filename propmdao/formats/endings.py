@@ -66,12 +66,16 @@ class PolarReader(FileFormat):
 
 _UIUC = FileFormat(
     "geometry file of UIUC, named like apcsf_9x4.7_geom.txt",
-    "propmdao.formats.uiuc:read_named_uiuc_geometry",
+    "propmdao.formats.blade_tables.uiuc:read_named_uiuc_geometry",
 )
 
 #: Readers of propellers: functions of a path that return a `Propeller`.
 PROPELLER_READERS = {
     ".toml": FileFormat("propeller file", "propmdao.formats.toml_files:read_toml"),
+    ".pe0": FileFormat("geometry file of APC", "propmdao.formats.blade_tables.pe0:read_pe0"),
+    ".csv": FileFormat(
+        "table of a blade with heads", "propmdao.formats.blade_tables.csv_table:read_csv"
+    ),
     ".txt": _UIUC,
     ".dat": _UIUC,
 }

@@ -72,6 +72,7 @@ def with_naca_sections(
         name=name,
         airfoils=airfoils,
         thickness_over_chord=np.interp(propeller.r_over_R, r_over_R, thicknesses),
+        camber_over_chord=None,
         **changes,
     )
     write_toml(folder / f"{name}.toml", new)

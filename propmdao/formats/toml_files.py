@@ -13,6 +13,13 @@ from typing import Any
 
 import tomli_w
 
+from propmdao.formats.blade_tables.stated_units import (
+    BETA_FROM,
+    FORMS,
+    in_own_units,
+    to_chord_line,
+)
+from propmdao.propeller.airfoils.library import COORDINATE_ENDINGS
 from propmdao.propeller.checks import PropellerError
 from propmdao.propeller.description import DISTRIBUTIONS, Propeller
 from propmdao.runtime.input_files import read_text
@@ -29,7 +36,10 @@ def read_toml(path: str | os.PathLike[str]) -> Propeller:
     Parameters
     ----------
     path : path
-        TOML file; .dat paths in it are relative to its folder.
+        TOML file; paths of airfoils in it are relative to its folder. Lengths may be in millimetres
+        or inches, as `propmdao.formats.blade_tables.stated_units.in_own_units` takes them;
+        ``beta_from`` names the line that the blade angle is measured to, as `to_chord_line` there
+        takes it.
 
     Returns
     -------
@@ -53,7 +63,7 @@ def write_toml(path: str | os.PathLike[str], propeller: Propeller) -> int:
     Parameters
     ----------
     path : path
-        File to write; .dat files in its folder or below are named relative to it.
+        File to write; coordinate files in its folder or below are named relative to it.
     propeller : Propeller
         Propeller to write.
 
@@ -77,7 +87,7 @@ def write_toml(path: str | os.PathLike[str], propeller: Propeller) -> int:
         lines.append(f"{key} = [{', '.join(repr(float(value)) for value in values)}]")
     tables = []
     for position, name in propeller.airfoils:
-        if name.endswith(".dat"):
+        if name.endswith(COORDINATE_ENDINGS):
             absolute = Path(name).absolute()
             inside = absolute.is_relative_to(folder)
             name = str(absolute.relative_to(folder) if inside else absolute)
@@ -100,7 +110,7 @@ def propeller_from_text(text: str, label: str, folder: Path | None) -> Propeller
     label : str
         Name of the file, with which messages begin.
     folder : Path or None
-        Folder that .dat paths are relative to; None leaves them as they are.
+        Folder that paths of airfoils are relative to; None leaves them as they are.
 
     Returns
     -------
@@ -122,19 +132,24 @@ def propeller_from_text(text: str, label: str, folder: Path | None) -> Propeller
     except ValueError:  # what int() refuses
         where = _line_of(text, _LONG)
         raise PropellerError(f"{label}{where}: a number has too many digits") from None
-    fields = dataclasses.fields(Propeller)
-    keys = [field.name for field in fields]
+    keys = [field.name for field in dataclasses.fields(Propeller)]
+    keys += ["beta_from", *(form for forms in FORMS.values() for form in forms[1:])]
     for key in data:
         if key not in keys:
             near = difflib.get_close_matches(key, keys, n=1)
             hint = f"did you mean '{near[0]}'?" if near else f"known: {', '.join(keys)}"
             raise PropellerError(f"{label}: unknown key '{key}'; {hint}")
+    beta_from = data.pop("beta_from", BETA_FROM[0])
+    try:
+        data = in_own_units(data)
+    except PropellerError as error:
+        raise PropellerError(f"{label}: {error}") from error
     for key in ("name", "diameter", "n_blades", "r_over_R", "c_over_R", "beta_deg", "airfoils"):
         if key not in data:
             raise PropellerError(f"{label}: missing key '{key}'")
     data["airfoils"] = _airfoil_tables(label, data["airfoils"], folder)
     try:
-        return Propeller(**data)
+        return to_chord_line(Propeller(**data), beta_from)
     except PropellerError as error:
         raise PropellerError(f"{label}: {error}") from error
 
@@ -146,7 +161,7 @@ def _line_of(text: str, what: re.Pattern[str]) -> str:
 
 
 def _airfoil_tables(label: str, tables: Any, folder: Path | None) -> list[tuple[float, str]]:
-    """Read airfoils = [{r_over_R, airfoil}, ...]; .dat paths become relative to the folder."""
+    """Read airfoils = [{r_over_R, airfoil}, ...]; paths become relative to the folder."""
     pairs = []
     for table in tables if isinstance(tables, list) else [tables]:
         if not isinstance(table, dict) or set(table) != {"r_over_R", "airfoil"}:
@@ -155,7 +170,7 @@ def _airfoil_tables(label: str, tables: Any, folder: Path | None) -> list[tuple[
                 f"got {reprlib.repr(table)}"
             )
         name = table["airfoil"]
-        if folder is not None and isinstance(name, str) and name.endswith(".dat"):
+        if folder is not None and isinstance(name, str) and name.endswith(COORDINATE_ENDINGS):
             name = str(folder / name)
         pairs.append((table["r_over_R"], name))
     return pairs

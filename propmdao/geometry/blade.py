@@ -69,6 +69,7 @@ class Blade:
         )
         max_thickness = thickness.max(axis=1)
         described_thickness = propeller.thickness_over_chord
+        described_camber = propeller.camber_over_chord
         return cls(
             radius=jnp.asarray(0.5 * propeller.diameter, dtype=float),
             chord_over_R=jnp.asarray(propeller.c_over_R),
@@ -78,7 +79,9 @@ class Blade:
             thickness_over_chord=jnp.asarray(
                 max_thickness if described_thickness is None else described_thickness
             ),
-            camber_over_chord=jnp.asarray(max_camber),
+            camber_over_chord=jnp.asarray(
+                max_camber if described_camber is None else described_camber
+            ),
             camber_shape=jnp.asarray(shape),
             thickness_shape=jnp.asarray(thickness / max_thickness[:, None]),
         )

@@ -26,6 +26,8 @@ CHORD = Range(1e-6, 10.0)
 OFFSET = Range(-10.0, 10.0)
 #: Maximum thickness over chord.
 THICKNESS = Range(1e-4, 0.999)
+#: Maximum camber over chord.
+CAMBER = Range(-0.5, 0.5)
 
 
 class PropellerError(ValueError):

@@ -25,7 +25,10 @@ DISTRIBUTIONS = (
     "thickness_over_chord",
     "sweep_over_R",
     "rake_over_R",
+    "camber_over_chord",
 )
+#: Those of them that follow from the airfoils where they are not described.
+_OF_AIRFOILS = ("thickness_over_chord", "camber_over_chord")
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
@@ -58,6 +61,8 @@ class Propeller:
     rake_over_R : (n_stations,) array or number, optional
         Distance of the quarter chord from the rotor plane toward thrust over the tip radius, 0 by
         default.
+    camber_over_chord : (n_stations,) array, optional
+        Maximum camber over chord, to which the camber line is scaled; the airfoils' own by default.
     source : str
         Origin of the numbers.
 
@@ -77,6 +82,7 @@ class Propeller:
     thickness_over_chord: FloatArray | None = None
     sweep_over_R: FloatArray = dataclasses.field(default_factory=lambda: np.zeros(()))
     rake_over_R: FloatArray = dataclasses.field(default_factory=lambda: np.zeros(()))
+    camber_over_chord: FloatArray | None = None
     source: str = ""
 
     def __post_init__(self) -> None:
@@ -94,7 +100,7 @@ class Propeller:
         object.__setattr__(self, "r_over_R", r)
         for key in DISTRIBUTIONS[1:]:
             value = getattr(self, key)
-            if key == "thickness_over_chord" and value is None:
+            if key in _OF_AIRFOILS and value is None:
                 continue
             if key in ("sweep_over_R", "rake_over_R"):
                 value = _everywhere(key, value, r)
@@ -106,6 +112,8 @@ class Propeller:
         checks.require("beta_deg", "be within -90..90", np.abs(beta) <= 90.0, beta, r)
         if thickness is not None:
             checks.require_within("thickness_over_chord", checks.THICKNESS, thickness, r)
+        if self.camber_over_chord is not None:
+            checks.require_within("camber_over_chord", checks.CAMBER, self.camber_over_chord, r)
         object.__setattr__(self, "airfoils", checks.airfoil_pairs(self.airfoils))
 
     def __setstate__(self, state: dict[str, Any]) -> None:
@@ -122,8 +130,8 @@ class Propeller:
         -------
         camber, thickness : (n_stations, n_chord) arrays
             Camber line and full thickness over chord, on
-            `airfoils.airfoil.CHORD_FRACTION`; the thickness is that of the airfoils, not
-            scaled to `thickness_over_chord`.
+            `airfoils.airfoil.CHORD_FRACTION`; both are those of the airfoils, not scaled to
+            `thickness_over_chord` and `camber_over_chord`.
         """
         airfoils = [find_airfoil(name) for _, name in self.airfoils]
         positions = [position for position, _ in self.airfoils]

@@ -127,7 +127,7 @@ def test_only_mach_numbers_beyond_the_file_are_warned_of(tmp_path: Path) -> None
 
 
 def test_a_blade_may_mix_a_table_over_mach_number_with_the_catalogue(tmp_path: Path) -> None:
-    propeller = load_propeller("apcsf_11x4.7")
+    propeller = load_propeller("apcsf_11x4.7_uiuc")
     table = read_c81(written(tmp_path, WIDE))
     plain, mixed = polars_for(propeller), polars_for(propeller, own={"e63": table})
     assert mixed.mach is not None and mixed.values.ndim == plain.values.ndim + 1

@@ -78,4 +78,4 @@ def test_a_file_that_no_reader_is_for_lists_those_there_are(tmp_path: Path) -> N
         load_propeller(path)
     message = str(caught.value)
     assert message.startswith(f"{path}: no propeller is read from a file with the ending '.step'")
-    assert ".toml (propeller file), .txt or .dat (" in message and "\n" not in message
+    assert ".csv (table of a blade with heads), .txt or .dat (" in message and "\n" not in message

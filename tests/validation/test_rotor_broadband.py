@@ -37,13 +37,13 @@ BANDS = third_octave_centers(500, 10e3)
 
 @pytest.fixture(scope="module")
 def hover():
-    propeller = load_propeller("apcsf_11x4.7")
+    propeller = load_propeller("apcsf_11x4.7_uiuc")
     return analyze(propeller, rpm=RPM, density=DENSITY, broadband=True, observers=OBSERVERS)
 
 
 @pytest.fixture(scope="module")
 def strips(hover):
-    propeller = load_propeller("apcsf_11x4.7")
+    propeller = load_propeller("apcsf_11x4.7_uiuc")
     section_radii = strip_interpolation(propeller.r_over_R, Fidelity().n_spanwise)
     steady, states = hover.loads, hover.loads.sections
     flow = steady.strips, states.relative_speed, states.lift_coefficient
@@ -72,7 +72,7 @@ def measured(reference_data):
 def test_third_octaves_with_the_thrust_of_the_wind_tunnel(measured):
     # One twist offset, fitted to the wind tunnel's static thrust and to no noise.
     turned = analyze(
-        load_propeller("apcsf_11x4.7"), rpm=RPM, density=DENSITY, broadband=True,
+        load_propeller("apcsf_11x4.7_uiuc"), rpm=RPM, density=DENSITY, broadband=True,
         observers=OBSERVERS, twist_offset_deg=2.25,
     )  # fmt: skip
     assert 0.97 < float(turned.loads.thrust) / 4.037 < 1.02

@@ -19,7 +19,7 @@ pytestmark = pytest.mark.validation
 MEASURED = (
     Path(__file__).parents[2] / "studies" / "validation" / "measurements" / "uiuc_apcsf_11x4.7.toml"
 )
-SLOW_FLYER = load_propeller("apcsf_11x4.7")
+SLOW_FLYER = load_propeller("apcsf_11x4.7_uiuc")
 THESIS = load_propeller("apcsf_11x4.7_thesis")
 NACA_4412 = dataclasses.replace(
     SLOW_FLYER, airfoils=((0.15, "naca4412"),), thickness_over_chord=None

@@ -29,22 +29,24 @@ MEASURED = Path(__file__).parents[2] / "studies" / "validation" / "measurements"
 # Mean absolute errors in per cent: static CT, CP of each point; CT, CP to J 0.5 and beyond of the
 # static coefficient; ratio of the slopes of static CT. The twist offset in degrees.
 PUBLISHED = {
-    "apcsf_11x4.7": ((13.5, 22.2), (20.0, 21.4), (15.0, 23.2), 0.56),
+    "apcsf_11x4.7_uiuc": ((13.5, 22.2), (20.0, 21.4), (15.0, 23.2), 0.56),
     "apcsf_11x4.7_thesis": ((18.2, 29.9), (22.4, 33.1), (14.0, 49.1), 0.48),
-    "apcsf_10x4.7": ((12.0, 22.0), (17.7, 21.6), (22.1, 26.2), 0.50),
-    "apce_10x7": ((8.4, 9.5), (3.1, 4.7), (4.2, 3.0), 1.22),
+    "apcsf_10x4.7_uiuc": ((12.0, 22.0), (17.7, 21.6), (22.1, 26.2), 0.50),
+    "apce_10x7_uiuc": ((8.4, 9.5), (3.1, 4.7), (4.2, 3.0), 1.22),
 }
 CALIBRATED = {
-    "apcsf_11x4.7": (2.25, (2.0, 1.8)),
+    "apcsf_11x4.7_uiuc": (2.25, (2.0, 1.8)),
     "apcsf_11x4.7_thesis": (3.18, (1.8, 3.4)),
-    "apcsf_10x4.7": (2.09, (2.8, 2.5)),
-    "apce_10x7": (-2.11, (13.7, 21.0)),
+    "apcsf_10x4.7_uiuc": (2.09, (2.8, 2.5)),
+    "apce_10x7_uiuc": (-2.11, (13.7, 21.0)),
 }
 WITHIN = 0.7  # per cent
 
 
 def measured(name):
-    tunnel = read_wind_tunnel(MEASURED / f"uiuc_{name.removesuffix('_thesis')}.toml")
+    tunnel = read_wind_tunnel(
+        MEASURED / f"uiuc_{name.removesuffix('_thesis').removesuffix('_uiuc')}.toml"
+    )
     return dataclasses.replace(tunnel, static=tunnel.static[::3], dynamic=tunnel.dynamic[::6])
 
 
@@ -82,6 +84,6 @@ def test_calibrated_on_static_thrust_alone(name):
 def test_slow_flyer_in_hover_wants_more_twist_the_faster_it_turns():
     # The polars' Reynolds number alone gives a good half of the measured trend.
     static = measured("apcsf_11x4.7").static
-    propeller = load_propeller("apcsf_11x4.7")
+    propeller = load_propeller("apcsf_11x4.7_uiuc")
     needed = [calibrated_twist_deg(propeller, static[i : i + 1]) for i in (0, 2, 5)]
     assert needed == pytest.approx([1.73, 1.85, 3.32], abs=0.15)

@@ -13,6 +13,9 @@ from propmdao.propeller.airfoils.airfoil import Airfoil, AirfoilError, naca4_fro
 from propmdao.propeller.airfoils.coordinate_files import read_coordinates
 from propmdao.propeller.catalog import airfoil_file, airfoil_names
 
+#: Endings of coordinate files.
+COORDINATE_ENDINGS = (".dat", ".csv")
+
 
 @functools.cache
 def _from_catalogue(name: str) -> Airfoil:
@@ -28,7 +31,7 @@ def find_airfoil(name: str) -> Airfoil:
     ----------
     name : str
         A name of the catalogue ("e63"), a NACA 4-digit name ("naca4412"), or the path of a
-        coordinate file that ends in .dat.
+        coordinate file that ends in .dat or .csv.
 
     Returns
     -------
@@ -43,7 +46,7 @@ def find_airfoil(name: str) -> Airfoil:
     names = airfoil_names()
     if name in names:
         return _from_catalogue(name)
-    if name.endswith(".dat"):
+    if name.endswith(COORDINATE_ENDINGS):
         return read_coordinates(Path(name))
     if name.startswith("naca"):
         return naca4_from_name(name)

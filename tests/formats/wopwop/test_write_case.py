@@ -36,7 +36,7 @@ AIR, OMEGA = Air(density=1.2, sound_speed=340.0), 1200.0
 
 @pytest.fixture(scope="module")
 def nodes():
-    propeller = load_propeller("apcsf_11x4.7")
+    propeller = load_propeller("apcsf_11x4.7_uiuc")
     span = surface_interpolation(propeller.r_over_R, 8)
     return np.asarray(surface_nodes(Blade.from_propeller(propeller), span, 11))
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import re
 import warnings
 from collections.abc import Sequence
 from pathlib import Path
@@ -11,23 +10,15 @@ from pathlib import Path
 import numpy as np
 import numpy.typing as npt
 
+from propmdao.formats.blade_tables.assumptions import AssumedBladeWarning
+from propmdao.formats.blade_tables.names import LARGEST, blades_of_name, inches_of_name
 from propmdao.propeller.checks import PropellerError
 from propmdao.propeller.description import Propeller
 from propmdao.runtime.input_files import read_text, table_rows
 
 _INCH = 0.0254  # m
-# Diameter and pitch, then the number of blades where it is not two: apcsf_9x4.7_geom,
-# da4022_9x6.75_3b.
-_NAME = re.compile(r"_(\d+(?:\.\d+)?)x\d+(?:\.\d+)?(?=_|$)(?:.*_(\d)b(?=_|$))?")
-# Propellers of the data set have 2.2 to 19 inches. A larger number is no inches: five of its names
-# are in millimetres (pl_57x20), some have lost a decimal point (ancf_125x75).
-_LARGEST = 30.0  # inches
 _N_BLADES = 2
 _AIRFOIL = "naca4412"
-
-
-class AssumedBladeWarning(UserWarning):
-    """A file leaves out a part of the blade, for which something has been assumed."""
 
 
 def read_named_uiuc_geometry(path: str | os.PathLike[str]) -> Propeller:
@@ -52,20 +43,19 @@ def read_named_uiuc_geometry(path: str | os.PathLike[str]) -> Propeller:
         the message begins with the file.
     """
     path = Path(path)
-    name = _NAME.search(path.stem)
-    inches = float(name[1]) if name else 0.0
-    if name is None or not 0.0 < inches <= _LARGEST:
+    inches, said = inches_of_name(path.stem), blades_of_name(path.stem)
+    if inches is None:
         _columns(path)  # a file that is no geometry at all is refused as that
         raise PropellerError(
             f"{path}: the diameter is missing: a UIUC geometry file does not hold it, and the name "
-            f"does not say it, as apcsf_9x4.7_geom.txt does in inches, up to {_LARGEST:g}; rename "
+            f"does not say it, as apcsf_9x4.7_geom.txt does in inches, up to {LARGEST:g}; rename "
             "the file, or write a propeller file (TOML), which holds diameter, blades and airfoils"
         )
-    n_blades = int(name[2] or _N_BLADES)
+    n_blades = said or _N_BLADES
     propeller = read_uiuc_geometry(
         path, diameter=inches * _INCH, n_blades=n_blades, airfoils=[(1.0, _AIRFOIL)]
     )
-    blades = "" if name[2] else f" and {_N_BLADES} blades"
+    blades = "" if said else f" and {_N_BLADES} blades"
     warnings.warn(
         f"{path}: assumed, for the file does not say: NACA 4412 sections from root to tip{blades}; "
         "a propeller file (TOML), which `propmdao export` writes, can hold others",

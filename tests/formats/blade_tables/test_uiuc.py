@@ -7,8 +7,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from propmdao.formats.blade_tables.assumptions import AssumedBladeWarning
+from propmdao.formats.blade_tables.uiuc import read_uiuc_geometry
 from propmdao.formats.propellers import load_propeller
-from propmdao.formats.uiuc import AssumedBladeWarning, read_uiuc_geometry
 from propmdao.propeller.checks import PropellerError
 
 AIRFOILS = [(0.25, "e63"), (1.0, "naca4412")]

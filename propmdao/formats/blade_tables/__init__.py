@@ -1,0 +1,1 @@
+"""Geometry tables of makers and databases, read as propellers."""
