@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 from collections.abc import Sequence
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import numpy.typing as npt
@@ -13,6 +13,9 @@ from propmdao.propeller import checks
 from propmdao.propeller.airfoils.library import find_airfoil
 from propmdao.propeller.checks import PropellerError
 from propmdao.records.quantities import require_asked
+
+if TYPE_CHECKING:
+    from propmdao.records.models import Transition
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -26,6 +29,8 @@ DISTRIBUTIONS = (
     "sweep_over_R",
     "rake_over_R",
 )
+#: Transition of the boundary layers, optional numbers of a propeller's file.
+TRANSITION = ("n_crit", "trip_upper", "trip_lower")
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
@@ -60,6 +65,9 @@ class Propeller:
         default.
     source : str
         Origin of the numbers.
+    n_crit, trip_upper, trip_lower : float, optional
+        Transition of its boundary layers, as `propmdao.records.models.Transition` has it; None, the
+        default, says nothing about it. An analysis may ask for another one.
 
     Raises
     ------
@@ -78,6 +86,9 @@ class Propeller:
     sweep_over_R: FloatArray = dataclasses.field(default_factory=lambda: np.zeros(()))
     rake_over_R: FloatArray = dataclasses.field(default_factory=lambda: np.zeros(()))
     source: str = ""
+    n_crit: float | None = None
+    trip_upper: float | None = None
+    trip_lower: float | None = None
 
     def __post_init__(self) -> None:
         for key in ("name", "source"):
@@ -107,6 +118,10 @@ class Propeller:
         if thickness is not None:
             checks.require_within("thickness_over_chord", checks.THICKNESS, thickness, r)
         object.__setattr__(self, "airfoils", checks.airfoil_pairs(self.airfoils))
+        for key in TRANSITION:
+            if (value := getattr(self, key)) is not None:
+                object.__setattr__(self, key, checks.number(key, value))
+                require_asked(key, value, PropellerError)
 
     def __setstate__(self, state: dict[str, Any]) -> None:
         """Make arrays read-only again, which pickling forgets."""
@@ -114,6 +129,13 @@ class Propeller:
             if isinstance(value, np.ndarray):
                 value.setflags(write=False)
         self.__dict__.update(state)
+
+    @property
+    def transition(self) -> Transition:
+        """Transition of the boundary layers as far as it is described."""
+        from propmdao.records.models import Transition  # slow to import
+
+        return Transition(**{key: getattr(self, key) for key in TRANSITION})
 
     def sections(self) -> tuple[FloatArray, FloatArray]:
         """Blend the airfoils to the stations, linearly in r/R.
