@@ -4,10 +4,9 @@ from __future__ import annotations
 
 import contextlib
 import hashlib
+import io
 import os
 import tempfile
-import zipfile
-import zlib
 from collections.abc import Callable, Mapping
 from pathlib import Path
 
@@ -19,6 +18,9 @@ from propmdao.runtime.output_files import OutputError, replacing
 
 #: Variable of the environment that puts the caches elsewhere.
 FOLDER_VARIABLE = "PROPMDAO_CACHE_DIR"
+# A file begins with this many bytes, the checksum of the archive behind them: an archive that is
+# damaged here or there fails in many ways, or is read without a part.
+_DIGEST = hashlib.sha256().digest_size
 
 
 def cache_folder(name: str) -> Path | None:
@@ -72,11 +74,16 @@ def kept_arrays(
     folder = cache_folder(name)
     if folder is None:
         return dict(make())
-    file = folder / f"{hashlib.sha256(key).hexdigest()}.npz"
-    damaged = (OSError, ValueError, EOFError, zipfile.BadZipFile, zlib.error)
-    with contextlib.suppress(*damaged), np.load(file) as members:
-        return dict(members)
-    arrays = dict(make())
+    file = folder / hashlib.sha256(key).hexdigest()
+    with contextlib.suppress(OSError):  # there is none yet
+        content = file.read_bytes()
+        digest, archive = content[:_DIGEST], content[_DIGEST:]
+        if hashlib.sha256(archive).digest() == digest:
+            with np.load(io.BytesIO(archive)) as members:
+                return dict(members)
+    arrays, stream = dict(make()), io.BytesIO()
+    np.savez_compressed(stream, allow_pickle=False, **arrays)
+    archive = stream.getvalue()
     with contextlib.suppress(OutputError), replacing(file) as new:  # a full disk
-        np.savez_compressed(new, allow_pickle=False, **arrays)
+        new.write_bytes(hashlib.sha256(archive).digest() + archive)
     return arrays
