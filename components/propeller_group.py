@@ -19,7 +19,11 @@ from propmdao.components.geometry_comp import (
     declare_camber,
 )
 from propmdao.components.inputs.control_points import add_control_points, declare_control_points
-from propmdao.components.inputs.model_options import declare_model, model_of
+from propmdao.components.inputs.model_options import (
+    TRANSITION_OPTIONS,
+    declare_model,
+    model_of,
+)
 from propmdao.components.inputs.noise_inputs import declare_observers
 from propmdao.components.inputs.rotor_inputs import declare_polars
 from propmdao.components.inputs.rpm_bounds import declare_bounds
@@ -118,12 +122,17 @@ design_lift_coefficient : (n_stations,) arrays
         Hold the lattice to the polars of the sections (default); False for inviscid flow.
     stall_delay : bool
         True (default): rotation delays the stall of the sections.
+    n_crit, trip_upper, trip_lower : float or None
+        Transition in the polars: critical amplification exponent, x/c of the trips of the upper and
+        the lower side, 1 without; None (default): the propeller's, or 5 and no trips.
     polars : SectionPolars or None
-        Polars that `polars_for` makes, for tables of one's own; None (default) for the catalogue's.
+        Polars that `polars_for` makes, for tables of one's own at a transition of their own; None
+        (default) for the catalogue's.
     broadband : bool
         Add the broadband self-noise of the blades.
     trip : {"none", "light", "heavy"}
-        Tripping of the boundary layers in broadband noise, not in the loads.
+        Tripping of the boundary layers in broadband noise alone; "none" (default): as in the loads,
+        light where both sides are tripped.
     camber : {"camber_over_chord", "design_lift_coefficient"}
         Distribution that gives the camber; "camber_over_chord" is the default.
 
@@ -134,7 +143,7 @@ design_lift_coefficient : (n_stations,) arrays
     ValueError
         If `observers` are no positions, `rpm_bounds` are not positive and rising, control points do
         not fit the blade, or `broadband` is asked for without observers, `trip` without
-        `broadband`.
+        `broadband`, a transition in inviscid flow or beside `polars`.
     om.AnalysisError
         If a component has no result; with `num_nodes` the message has the node.
     """
@@ -159,13 +168,21 @@ design_lift_coefficient : (n_stations,) arrays
 
     def setup(self) -> None:
         options = self.options
-        model, propeller = model_of(options), options["propeller"]
+        propeller = options["propeller"]
+        model = model_of(options).completed(propeller.transition)
         is_heard = options["observers"] is not None
         if model.noise.broadband is not None and not is_heard:
             raise ValueError("broadband noise is heard at observers; there are none")
         polars = None
         if model.loads.viscous:
-            polars = options["polars"] or polars_for(propeller)
+            polars = options["polars"]
+            transition = [name for name in TRANSITION_OPTIONS if options[name] is not None]
+            if polars is not None and transition:
+                raise ValueError(
+                    f"polars have been made at a transition of their own: {transition[0]} does not"
+                    " go along"
+                )
+            polars = polars or polars_for(propeller, transition=model.loads.transition)
         self._add_geometry(propeller, polars)
         self._add_loads(propeller, polars)
         if is_heard:

@@ -18,8 +18,17 @@ _RECORDS = {
     "wake": (WakeLaw(), "how the prescribed wake moves"),
 }
 _WORDS = {"trip": get_args(Trip)}
+#: Options of the transition, numbers or None.
+TRANSITION_OPTIONS = ("n_crit", "trip_upper", "trip_lower")
 #: Options of `declare_model`.
-MODEL_OPTIONS = (*_RECORDS, "viscous", "stall_delay", "broadband", "trip")
+MODEL_OPTIONS = (
+    *_RECORDS,
+    "viscous",
+    "stall_delay",
+    *TRANSITION_OPTIONS,
+    "broadband",
+    "trip",
+)
 
 
 def declare_model(options: OptionsDictionary, names: Iterable[str] = MODEL_OPTIONS) -> None:
@@ -41,6 +50,8 @@ def declare_model(options: OptionsDictionary, names: Iterable[str] = MODEL_OPTIO
             allowed: dict[str, Any] = {"types": bool}
             if name in _WORDS:
                 allowed = {"values": _WORDS[name]}
+            elif name in TRANSITION_OPTIONS:
+                allowed = {"types": (int, float), "allow_none": True}
             options.declare(name, quantity.default, desc=quantity.meaning, **allowed)
 
 

@@ -38,8 +38,8 @@ def fly_over(analysis: Analysis, flight: Flight, *, sound: bool = False) -> Flyo
     ----------
     analysis : Analysis
         Analysis at the speed of the flight. Boundary layers are tripped in the broadband noise,
-        which is always part of a flyover, as the analysis' noise model says; untripped where it has
-        none.
+        which is always part of a flyover, as the analysis' noise model says, or as in its loads
+        where it has none.
     flight : Flight
         Height of the flight, place of the microphone.
     sound : bool
@@ -186,6 +186,8 @@ def _broadband(
     pose = poses(track, times)
     beside = np.einsum("tij,ti->tj", np.asarray(pose.rotation), place - np.asarray(pose.origin))
     n_blades, model = int(analysis.changed_propeller.n_blades), analysis.model.noise.broadband
+    if model is None:
+        model = SelfNoiseModel(analysis.model.loads.transition.trip_in_noise)
     powers = [
         rotor_self_noise(
             flow,
@@ -193,7 +195,7 @@ def _broadband(
             analysis.state,
             position[None],
             BANDS_HZ / factor,
-            model=model or SelfNoiseModel(),
+            model=model,
         ).total[0]
         for position, factor in zip(beside, doppler, strict=True)
     ]

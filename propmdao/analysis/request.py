@@ -40,7 +40,9 @@ class Asked(TypedDict, total=False):
     broadband: bool
     trip: Trip
     wake: WakeLaw
-    n_crit: float
+    n_crit: float | None
+    trip_upper: float | None
+    trip_lower: float | None
     fidelity: Fidelity
     observers: npt.ArrayLike
     surroundings: Surroundings
@@ -139,7 +141,6 @@ class Request:
 #: Record that holds each value, as a dotted path.
 _PLACES = {name: quantity.record for name, quantity in ASKED.items()} | {
     "wake": "model.loads",
-    "n_crit": "model.loads.transition",
     "fidelity": "model",
     "observers": "listening",
     "surroundings": "listening",
@@ -153,9 +154,15 @@ def _model(places: Mapping[str, dict[str, Any]]) -> Model:
     trip = self_noise.get("trip", "none")
     if trip != "none" and not broadband:
         raise ValueError(f"trip {trip!r} is about broadband noise: ask for broadband noise, too")
-    transition = Transition(**places.get("model.loads.transition", {}))
+    transition = places.get("model.loads.transition", {})
+    if not places.get("model.loads", {}).get("viscous", True):
+        for name, value in transition.items():
+            if value is not None:
+                raise ValueError(
+                    f"{name} is about the polars of the sections: inviscid flow has none"
+                )
     return Model(
-        loads=LoadModel(**places.get("model.loads", {}), transition=transition),
+        loads=LoadModel(**places.get("model.loads", {}), transition=Transition(**transition)),
         noise=NoiseModel(SelfNoiseModel(**self_noise) if broadband else None),
         **places.get("model", {}),
     )

@@ -75,8 +75,9 @@ def analyze(
         Polars by `polars_for`, for tables of one's own; by default the catalogue's.
     **asked
         Single values: rpm, thrust [N], speed [m/s], density [kg/m^3] and the rest of the air;
-        twist_offset_deg, chord_factor, diameter, n_blades; viscous, stall_delay, broadband, trip,
-        fidelity; observers, (n, 3) positions [m] as `propmdao.arc` makes them, surroundings.
+        twist_offset_deg, chord_factor, diameter, n_blades; viscous, stall_delay, n_crit,
+        trip_upper, trip_lower, broadband, trip, fidelity; observers, (n, 3) positions [m] as
+        `propmdao.arc` makes them, surroundings.
 
     Returns
     -------
@@ -92,7 +93,9 @@ def analyze(
     """
     records = {"point": point, "change": change, "model": model, "listening": listening}
     request = Request.of(records, **asked)
-    point, model, listening = request.point, request.model, request.listening
+    model = request.model.completed(propeller.transition)
+    request = dataclasses.replace(request, model=model)
+    point, listening = request.point, request.listening
     changed = request.change.applied_to(propeller)
     radius = 0.5 * changed.diameter
     require_outside_rotor(listening.observers, radius)

@@ -44,8 +44,9 @@ induces, then tones by Farassat's Formulation 1A: thickness and loading noise of
 surface, heard by observers that fly along. With --broadband also the self-noise of the blades
 (Brooks, Pope and Marcolini). Ground may reflect the sound, and air absorb it.
 
-The polars that ship are of E63, Clark-Y, their blends and NACA 4-digit sections; others are given
-with --polar, or made where NeuralFoil is installed.
+The polars that ship are of E63, Clark-Y, their blends and NACA 4-digit sections at n_crit 3 to 9,
+and tripped at 0.05 c on both sides at n_crit 5; others are given with --polar, or made where
+NeuralFoil is installed, once on a machine.
 """
 
 EXAMPLES = """\
@@ -56,6 +57,8 @@ examples:
   propmdao analyze apcsf_11x4.7 --rpm 4200 --arc 1.905 -45 --broadband --wav hover.wav
   propmdao analyze apcsf_11x4.7 --rpm 4200 --ground 10 --grid 0:40:5 0 -10 --absorption
   propmdao analyze apcsf_11x4.7 --rpm 4200 --speed 8 --level --hemisphere 20 10 --figures results
+  propmdao analyze apcsf_11x4.7 --rpm 4200 --n-crit 9
+  propmdao analyze apcsf_11x4.7 --rpm 4200 --trip-upper 0.05 --trip-lower 0.05
   propmdao analyze my_blade.toml --rpm 4200 --polar sg6042 sg6042_re50k.txt sg6042_re100k.txt
 
 CT = T/(rho n^2 D^4), CQ = Q/(rho n^2 D^5), CP = 2 pi CQ, J = V/(n D), eta = J CT/CP, n in rev/s.
@@ -72,6 +75,9 @@ ASKED_OPTIONS = (
     "twist_offset_deg",
     "viscous",
     "stall_delay",
+    "n_crit",
+    "trip_upper",
+    "trip_lower",
 )
 
 
@@ -153,8 +159,11 @@ def _analyze(options: argparse.Namespace) -> None:
     # Slow to import, so only once the arguments are known to be good.
     from propmdao.analysis.request import Request
 
-    for point in points:
+    requests = [
         Request.of({"listening": listening}, **{k: v for k, v in point.items() if k in ASKED})
+        for point in points
+    ]
+    transition = requests[0].model.loads.transition
     from propmdao.aerodynamics.sections.polars.propeller_polars import polars_for
     from propmdao.aerodynamics.sections.polars.sources import polar_sources
     from propmdao.analysis.single_point import analyze
@@ -171,11 +180,11 @@ def _analyze(options: argparse.Namespace) -> None:
                 f" {', '.join(dict.fromkeys(names))}"
             )
     with warning_lines("analyze"):
-        polars = polars_for(propeller, own) if options.viscous else None
+        polars = polars_for(propeller, own, transition) if options.viscous else None
         analyses = [analyze(propeller, polars=polars, **point) for point in points]
     if polars is not None:
         files = {airfoil: ", ".join(names) for airfoil, *names in options.polar}
-        sources = polar_sources(propeller, own)
+        sources = polar_sources(propeller, own, transition)
         sources |= {name: files[key] for name in sources if (key := _key(name, files))}
         analyses = [dataclasses.replace(analysis, polars=sources) for analysis in analyses]
     results = [analysis.to_dict() for analysis in analyses]

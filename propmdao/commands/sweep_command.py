@@ -48,7 +48,15 @@ when every point has failed.
 """
 
 #: What is asked of all points alike.
-ASKED_OF_ALL = ("viscous", "stall_delay", "broadband", "trip")
+ASKED_OF_ALL = (
+    "viscous",
+    "stall_delay",
+    "n_crit",
+    "trip_upper",
+    "trip_lower",
+    "broadband",
+    "trip",
+)
 
 
 def add_sweep(commands: argparse._SubParsersAction[Any]) -> None:

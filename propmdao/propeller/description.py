@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 from collections.abc import Sequence
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import numpy.typing as npt
@@ -13,6 +13,9 @@ from propmdao.propeller import checks
 from propmdao.propeller.airfoils.library import find_airfoil
 from propmdao.propeller.checks import PropellerError
 from propmdao.records.quantities import require_asked
+
+if TYPE_CHECKING:
+    from propmdao.records.models import Transition
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -29,6 +32,8 @@ DISTRIBUTIONS = (
 )
 #: Those of them that follow from the airfoils where they are not described.
 _OF_AIRFOILS = ("thickness_over_chord", "camber_over_chord")
+#: Transition of the boundary layers, optional numbers of a propeller's file.
+TRANSITION = ("n_crit", "trip_upper", "trip_lower")
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
@@ -65,6 +70,9 @@ class Propeller:
         Maximum camber over chord, to which the camber line is scaled; the airfoils' own by default.
     source : str
         Origin of the numbers.
+    n_crit, trip_upper, trip_lower : float, optional
+        Transition of its boundary layers, as `propmdao.records.models.Transition` has it; None, the
+        default, says nothing about it. An analysis may ask for another one.
 
     Raises
     ------
@@ -84,6 +92,9 @@ class Propeller:
     rake_over_R: FloatArray = dataclasses.field(default_factory=lambda: np.zeros(()))
     camber_over_chord: FloatArray | None = None
     source: str = ""
+    n_crit: float | None = None
+    trip_upper: float | None = None
+    trip_lower: float | None = None
 
     def __post_init__(self) -> None:
         for key in ("name", "source"):
@@ -115,6 +126,10 @@ class Propeller:
         if self.camber_over_chord is not None:
             checks.require_within("camber_over_chord", checks.CAMBER, self.camber_over_chord, r)
         object.__setattr__(self, "airfoils", checks.airfoil_pairs(self.airfoils))
+        for key in TRANSITION:
+            if (value := getattr(self, key)) is not None:
+                object.__setattr__(self, key, checks.number(key, value))
+                require_asked(key, value, PropellerError)
 
     def __setstate__(self, state: dict[str, Any]) -> None:
         """Make arrays read-only again, which pickling forgets."""
@@ -122,6 +137,13 @@ class Propeller:
             if isinstance(value, np.ndarray):
                 value.setflags(write=False)
         self.__dict__.update(state)
+
+    @property
+    def transition(self) -> Transition:
+        """Transition of the boundary layers as far as it is described."""
+        from propmdao.records.models import Transition  # slow to import
+
+        return Transition(**{key: getattr(self, key) for key in TRANSITION})
 
     def sections(self) -> tuple[FloatArray, FloatArray]:
         """Blend the airfoils to the stations, linearly in r/R.

@@ -6,7 +6,7 @@ import dataclasses
 import json
 import zlib
 
-from propmdao.propeller.description import Propeller
+from propmdao.propeller.description import TRANSITION, Propeller
 
 
 def checksum(propeller: Propeller) -> str:
@@ -22,5 +22,8 @@ def checksum(propeller: Propeller) -> str:
     str
         Eight hexadecimal digits.
     """
-    description = json.dumps(dataclasses.asdict(propeller), default=lambda array: array.tolist())
+    fields = dataclasses.asdict(propeller)
+    # A description that says nothing of transition has the checksum that it had before it could.
+    said = {k: value for k, value in fields.items() if k not in TRANSITION or value is not None}
+    description = json.dumps(said, default=lambda array: array.tolist())
     return f"{zlib.crc32(description.encode()):08x}"

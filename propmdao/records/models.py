@@ -6,39 +6,104 @@ import dataclasses
 from typing import Literal, get_args
 
 from propmdao.records.fidelity import Fidelity
-from propmdao.records.quantities import Range
+from propmdao.records.quantities import require_asked
 from propmdao.records.wake_law import WakeLaw
 
 #: How boundary layers are tripped, as NASA RP-1218 distinguishes them.
 Trip = Literal["none", "light", "heavy"]
 #: Planform of the blade's tip, as NASA RP-1218 distinguishes them.
 Tip = Literal["rounded", "square"]
-# Amplification of a wind tunnel full of turbulence and of the stillest air.
-_N_CRIT = Range(0.1, 30.0)
+#: x/c of a trip that is none: transition is left to the boundary layer.
+FREE = 1.0
+#: Trips up to this x/c on both sides make a tripped blade: boundary layers are turbulent on most of
+#: it. NASA RP-1218 tripped its airfoils by grit from the leading edge to 0.2 c.
+_TRIPPED = 0.5
 
 
 @dataclasses.dataclass(frozen=True)
 class Transition:
-    """Transition of the boundary layers in the polars of the sections.
+    """Transition of the boundary layers to turbulent flow, of the loads and of the noise.
+
+    A field that is None is left to the propeller's description, and where that says nothing to the
+    last of these: n_crit 5, no trips (`completed`).
 
     Attributes
     ----------
-    n_crit : float
-        Critical amplification exponent of the e^n method. The catalogue's polars have 5, for a
-        propeller's own turbulence lowers the 9 of a quiet wind tunnel. Polars of other exponents
-        are made by NeuralFoil (extra ``polars``).
+    n_crit : float or None
+        Critical amplification exponent of the e^n method: 9 in a quiet wind tunnel; 5 for a
+        propeller that stirs its own air.
+    trip_upper, trip_lower : float or None
+        x/c at which the upper (suction) and the lower side are tripped: forced transition, where
+        the boundary layer is not turbulent before; 1 leaves it free. The trip itself has no drag.
 
     Raises
     ------
     ValueError
-        If no boundary layer has such an exponent.
+        If no boundary layer has such an exponent, or a trip lies outside the chord.
     """
 
-    n_crit: float = 5.0
+    n_crit: float | None = None
+    trip_upper: float | None = None
+    trip_lower: float | None = None
 
     def __post_init__(self) -> None:
-        """Refuse exponents that no boundary layer has."""
-        _N_CRIT.require("n_crit", self.n_crit)
+        """Refuse exponents that no boundary layer has and trips off the section."""
+        for field in dataclasses.fields(self):
+            value = getattr(self, field.name)
+            if value is not None:
+                require_asked(field.name, value)
+
+    def completed(self, described: Transition | None = None) -> Transition:
+        """Fill in what was left open.
+
+        Parameters
+        ----------
+        described : Transition, optional
+            Transition of the propeller's description, which fills before the defaults do.
+
+        Returns
+        -------
+        Transition
+            Transition without None.
+        """
+        fillers = (self, described or Transition(), Transition(5.0, FREE, FREE))
+        values = {
+            field.name: next(
+                float(value)
+                for filler in fillers
+                if (value := getattr(filler, field.name)) is not None
+            )
+            for field in dataclasses.fields(self)
+        }
+        return Transition(**values)
+
+    @property
+    def upside_down(self) -> Transition:
+        """Transition of the section turned over: its trips change sides."""
+        return Transition(self.n_crit, self.trip_lower, self.trip_upper)
+
+    @property
+    def trip_in_noise(self) -> Trip:
+        """Trip that the broadband noise has of itself: light where both sides are tripped.
+
+        Forced transition adds no thickness to the boundary layer, which is the light trip of NASA
+        RP-1218; its heavy one is grit, which does.
+        """
+        tripped = all(
+            place is not None and place <= _TRIPPED for place in (self.trip_upper, self.trip_lower)
+        )
+        return "light" if tripped else "none"
+
+    def __str__(self) -> str:
+        """Describe a completed transition in some words: n_crit, and trips where there are any."""
+        text = f"n_crit {self.n_crit:g}"
+        if (self.trip_upper, self.trip_lower) != (FREE, FREE):
+            places = [
+                "free" if place == FREE else f"{place:g}"
+                for place in (self.trip_upper, self.trip_lower)
+            ]
+            text += f", trips at x/c {places[0]} (upper) and {places[1]} (lower)"
+        return text
 
 
 @dataclasses.dataclass(frozen=True)
@@ -54,7 +119,8 @@ class LoadModel:
     wake : WakeLaw
         Law by which the prescribed wake moves.
     transition : Transition
-        Transition of the boundary layers in the sections' polars.
+        Transition of the boundary layers in the sections' polars; a trip of both sides trips the
+        broadband noise, too.
     """
 
     viscous: bool = True
@@ -70,7 +136,8 @@ class SelfNoiseModel:
     Attributes
     ----------
     trip : {"none", "light", "heavy"}
-        Trip of the boundary layers in the noise model; it does not change the loads.
+        Trip of the boundary layers in the noise model; it does not change the loads. "none" leaves
+        it to the transition of the loads (`Model.completed`).
     tip : {"rounded", "square"}
         Planform of the blade's tip.
 
@@ -121,3 +188,24 @@ class Model:
     loads: LoadModel = dataclasses.field(default_factory=LoadModel)
     noise: NoiseModel = NoiseModel()
     fidelity: Fidelity = Fidelity()
+
+    def completed(self, described: Transition) -> Model:
+        """Fill in what the model leaves to the propeller.
+
+        Parameters
+        ----------
+        described : Transition
+            Transition of the propeller's description.
+
+        Returns
+        -------
+        Model
+            Model whose transition has no None, and whose broadband noise is tripped where the loads
+            are.
+        """
+        transition, noise = self.loads.transition.completed(described), self.noise
+        if noise.broadband is not None and noise.broadband.trip == "none":
+            broadband = dataclasses.replace(noise.broadband, trip=transition.trip_in_noise)
+            noise = dataclasses.replace(noise, broadband=broadband)
+        loads = dataclasses.replace(self.loads, transition=transition)
+        return dataclasses.replace(self, loads=loads, noise=noise)

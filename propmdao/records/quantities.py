@@ -15,6 +15,7 @@ from typing import Any
 # none.
 POINT, AIR, CHANGE = "point", "point.air", "change"
 LOADS, SELF_NOISE, FIDELITY = "model.loads", "model.noise.broadband", "model.fidelity"
+TRANSITION = "model.loads.transition"
 
 
 @dataclasses.dataclass(frozen=True)
@@ -202,14 +203,36 @@ _ASKED = (
         " Selig)",
     ),
     Quantity(
+        "n_crit", "", "amplification exponent at which boundary layers turn turbulent", TRANSITION,
+        per_node=False, option="--n-crit", placeholder="N",
+        help="critical amplification exponent of transition in the polars: 9 is a quiet wind"
+        " tunnel, less is disturbed air; default the propeller's, or 5",
+        allowed=Range(0.1, 30.0),
+    ),
+    Quantity(
+        "trip_upper", "", "x/c at which the upper side is tripped; 1 is free", TRANSITION,
+        per_node=False, option="--trip-upper", placeholder="X_C",
+        help="x/c at which the upper side is tripped in the polars: forced transition, 1 is free;"
+        " default the propeller's, or 1. With both sides tripped up to x/c 0.5 the broadband noise"
+        " is of lightly tripped blades",
+        allowed=Range(0.0, 1.0),
+    ),
+    Quantity(
+        "trip_lower", "", "x/c at which the lower side is tripped; 1 is free", TRANSITION,
+        per_node=False, option="--trip-lower", placeholder="X_C",
+        help="the same of the lower side",
+        allowed=Range(0.0, 1.0),
+    ),
+    Quantity(
         "broadband", "", "broadband self-noise beside the tones", "model.noise", False,
         per_node=False, option="--broadband", help="add the broadband self-noise to the tones",
     ),
     Quantity(
         "trip", "", "tripping of the boundary layers in broadband noise", SELF_NOISE, "none",
         per_node=False, option="--trip", placeholder="{none,light,heavy}",
-        help="tripped boundary layers in the broadband noise, default none. Untripped ones shed"
-        " vortices, which rule at the small angles of cruise; a rough or dusty blade sheds none",
+        help="tripped boundary layers in the broadband noise alone, default as in the polars:"
+        " none. Untripped ones shed vortices, which rule at the small angles of cruise; a rough or"
+        " dusty blade sheds none",
     ),
 )  # fmt: skip
 

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import os
-import tempfile
 import warnings
 from pathlib import Path
 
 import jax
-import platformdirs
 import threadpoolctl
+
+from propmdao.runtime.caches import cache_folder
 
 
 def use_64_bit_floats() -> None:
@@ -23,20 +23,16 @@ def use_64_bit_floats() -> None:
 def keep_compiled_code() -> None:
     """Let JAX keep compiled functions in the user's cache folder.
 
-    Compiling is most of the wait of a first analysis. The folder is the platform's own place for
-    caches (``~/.cache/propmdao/jax`` on Linux). A cache that the user has chosen, by
-    ``JAX_COMPILATION_CACHE_DIR`` or ``jax.config``, is left alone, and where no folder can be
-    written nothing is kept. JAX's key of an entry holds its own version and the features of the
-    processor, so a home folder shared between machines is safe.
+    Compiling is most of the wait of a first analysis. The folder is ``jax`` in that of
+    `propmdao.runtime.caches.cache_folder` (``~/.cache/propmdao`` on Linux). A cache that the user
+    has chosen, by ``JAX_COMPILATION_CACHE_DIR`` or ``jax.config``, is left alone, and where no
+    folder can be written nothing is kept. JAX's key of an entry holds its own version and the
+    features of the processor, so a home folder shared between machines is safe.
     """
     if jax.config.values["jax_compilation_cache_dir"] or "JAX_COMPILATION_CACHE_DIR" in os.environ:
         return
-    folder = Path(platformdirs.user_cache_dir("propmdao", appauthor=False)) / "jax"
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-        with tempfile.TemporaryFile(dir=folder):  # permission bits do not tell a read-only disk
-            pass
-    except OSError:
+    folder = cache_folder("jax")
+    if folder is None:
         return
     jax.config.update("jax_compilation_cache_dir", str(folder))
     # JAX keeps only what took a second to compile; an analysis is many functions below that.

@@ -75,6 +75,20 @@ def test_a_flyover_is_of_the_changed_blade():
         np.testing.assert_allclose(changed.mean_square[part], power, rtol=1e-9)
 
 
+def test_a_blade_tripped_in_the_loads_is_tripped_in_the_noise():
+    """Though its analysis had no broadband noise; its polars are those of trips."""
+    blade = dataclasses.replace(PROPELLER, trip_upper=0.05, trip_lower=0.05)
+    found = analyze(blade, rpm=4200.0, speed=8.0, fidelity=COARSE)
+    assert all("trips at x/c 0.05 (upper) and 0.05" in source for source in found.polars.values())
+    light = dataclasses.replace(found.model, noise=NoiseModel(SelfNoiseModel("light")))
+    flight = Flight(HEIGHT, duration=2.0)
+    noise = [
+        fly_over(analysis, flight).mean_square["broadband"]
+        for analysis in (found, with_records(found, model=light))
+    ]
+    np.testing.assert_array_equal(*noise)
+
+
 def test_a_flyover_is_in_the_air_of_its_analysis():
     along = run(speed=8.0, observers=arc(HEIGHT, [0.0]), density=1.0, sound_speed=330.0)
     heard = fly_over(along, Flight(HEIGHT, duration=2.0, absorption=False))

@@ -55,7 +55,7 @@ def test_single_values_go_into_the_records_that_hold_them():
 
 def test_every_value_of_the_table_may_be_asked_and_is_typed():
     assert set(ASKED) <= set(Asked.__annotations__)
-    others = {"wake", "n_crit", "fidelity", "observers", "surroundings"}
+    others = {"wake", "fidelity", "observers", "surroundings"}
     assert set(Asked.__annotations__) - set(ASKED) == others
 
 
@@ -100,6 +100,14 @@ def test_tripping_is_of_broadband_noise(trip):
     assert Request.of(rpm=4000.0, trip="none").model == Model()
 
 
+@pytest.mark.parametrize("name", ["n_crit", "trip_upper", "trip_lower"])
+def test_transition_is_of_sections(name):
+    with pytest.raises(ValueError, match=f"^{name} is about the polars of the sections: inviscid"):
+        Request.of(rpm=4000.0, viscous=False, **{name: 1.0})
+    left_open = Request.of(rpm=4000.0, viscous=False, **{name: None})
+    assert left_open.model == Request.of(rpm=4000.0, viscous=False).model
+
+
 def test_what_there_is_not_to_ask_is_named_with_all_there_is():
     with pytest.raises(TypeError, match="'rmp' is nothing that can be asked; there are rpm, "):
         analyze(PROPELLER, rmp=4000.0)
@@ -130,6 +138,7 @@ ASKED_AGAIN: dict[str, Asked] = {
         "diameter": 0.25,
         "n_blades": 3,
         "stall_delay": False,
+        "n_crit": 7.0,
         "wake": WakeLaw(inside=1.8),
         "broadband": True,
         "trip": "heavy",
@@ -184,7 +193,8 @@ def test_a_saved_result_says_what_was_asked_of_which_blade():
     assert result["polars"].keys() == {name for _, name in PROPELLER.airfoils}
     assert all("n_crit 5" in source for source in result["polars"].values())
     loads = result["model"]["loads"]
-    assert loads["viscous"] and loads["transition"] == {"n_crit": 5.0}
+    used = {"n_crit": 5.0, "trip_upper": 1.0, "trip_lower": 1.0}
+    assert loads["viscous"] and loads["transition"] == used
     assert result["model"]["noise"] == {"broadband": None}
     assert result["model"]["fidelity"] == dataclasses.asdict(COARSE)
     assert result["listening"]["observers"] == [[2.0, 0.0, 0.0]]

@@ -301,6 +301,7 @@ def test_help_explains_every_option(capsys: pytest.CaptureFixture[str]) -> None:
     assert exit_.value.code == 0
     text = capsys.readouterr().out
     options = "--rpm --thrust --speed --rho --twist-offset --inviscid --no-stall-delay --polar"
+    options += " --n-crit --trip-upper --trip-lower"
     options += " --arc --point --circle --hemisphere --grid --ground --level --absorption"
     options += (
         " --broadband --trip --wav --seconds --full-scale --figures --figure-at --figure-dba --json"

@@ -106,6 +106,53 @@ def test_the_law_of_the_wake_is_an_option(problem):
     assert 0.5 < thrust[1] / thrust[0] < 0.99
 
 
+def test_transition_is_an_option(problem, propeller, small):
+    """The air of a quiet tunnel (n_crit 9) takes lift from a blade at this Reynolds number."""
+    thrust = []
+    for n_crit in (None, 9.0):
+        prob = problem(trim="rpm", n_crit=n_crit)
+        prob.setup()
+        prob.set_val("rpm", 4200.0)
+        prob.set_val("speed", 0.0)
+        prob.run_model()
+        thrust.append(prob.get_val("thrust")[0])
+    assert 0.85 < thrust[1] / thrust[0] < 0.99
+    analysis = analyze(propeller, rpm=4200.0, n_crit=9.0, fidelity=small)
+    assert_allclose(thrust[1], float(analysis.loads.thrust), rtol=1e-6)
+
+
+@pytest.mark.slow
+def test_derivatives_at_another_transition(problem):
+    """Polars are an input of the components: their derivatives know no transition."""
+    prob = problem(trim="rpm", n_crit=8.0)
+    prob.setup()
+    thrust = []
+    for rpm in (4195.0, 4205.0, 4200.0):
+        prob.set_val("rpm", rpm)
+        prob.run_model()
+        thrust.append(prob.get_val("thrust")[0])
+    slope = prob.compute_totals(of=["thrust"], wrt=["rpm"])["thrust", "rpm"]
+    assert_allclose(slope, (thrust[1] - thrust[0]) / 10.0, rtol=1e-3)
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        ({"n_crit": 0.0}, "n_crit must be within 0.1 ... 30; it is 0"),
+        ({"trip_upper": -0.1}, "trip_upper must be within 0 ... 1; it is -0.1"),
+        ({"trip_lower": 0.1, "viscous": False}, "trip_lower is about the polars of the sections"),
+    ],
+)
+def test_transitions_that_there_are_not_are_refused(problem, options, message):
+    with pytest.raises(ValueError, match=message):
+        problem(**options).setup()
+
+
+def test_polars_of_ones_own_have_a_transition_of_their_own(problem, polars):
+    with pytest.raises(ValueError, match="transition of their own: n_crit does not go along"):
+        problem(polars=polars, n_crit=9.0).setup()
+
+
 def test_drag_costs_torque(problem):
     """What polars change: more torque at the same thrust."""
     torque = []

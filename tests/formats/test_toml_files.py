@@ -7,8 +7,10 @@ from pathlib import Path
 import pytest
 
 from propmdao.formats.propellers import load_propeller
-from propmdao.formats.toml_files import read_toml
+from propmdao.formats.toml_files import read_toml, write_toml
 from propmdao.propeller.checks import PropellerError
+from propmdao.propeller.identity import checksum
+from propmdao.records.models import Transition
 
 TEXT = """name = "x"
 diameter = 0.25
@@ -51,3 +53,34 @@ def test_what_no_file_should_hold_is_one_line(
 def test_a_path_that_no_file_can_have_is_one_line() -> None:
     with pytest.raises(PropellerError, match=r"^a\\0b.toml: cannot be read: embedded null byte"):
         load_propeller("a\0b.toml")
+
+
+def test_transition_is_described_in_the_file(tmp_path: Path) -> None:
+    path = tmp_path / "p.toml"
+    path.write_text(TEXT + "n_crit = 7\ntrip_upper = 0.1\n")
+    propeller = read_toml(path)
+    assert propeller.transition == Transition(7.0, 0.1, None)
+    write_toml(path, propeller)
+    assert read_toml(path).transition == propeller.transition
+    path.write_text(TEXT)
+    assert read_toml(path).transition == Transition()
+    assert checksum(read_toml(path)) == "01e72b9c"  # as before files could say it
+    assert checksum(read_toml(path)) != checksum(propeller)
+
+
+@pytest.mark.parametrize(
+    ("line", "message"),
+    [
+        ("n_crit = 0", "n_crit must be within 0.1 ... 30; it is 0"),
+        ("n_crit = nan", "n_crit must be a finite number; it is nan"),
+        ("trip_upper = -0.1", "trip_upper must be within 0 ... 1; it is -0.1"),
+        ("trip_lower = 1.2", "trip_lower must be within 0 ... 1; it is 1.2"),
+        ('trip_lower = "heavy"', "trip_lower must be a number; it is 'heavy'"),
+    ],
+)
+def test_a_transition_that_there_is_not_is_refused(line: str, message: str, tmp_path: Path) -> None:
+    path = tmp_path / "p.toml"
+    path.write_text(TEXT + line + "\n")
+    with pytest.raises(PropellerError) as caught:
+        read_toml(path)
+    assert str(caught.value) == f"{path}: {message}"

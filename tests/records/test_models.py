@@ -7,12 +7,20 @@ import dataclasses
 import pytest
 
 from propmdao.records.fidelity import Fidelity
-from propmdao.records.models import LoadModel, Model, NoiseModel, SelfNoiseModel, Transition
+from propmdao.records.models import (
+    FREE,
+    LoadModel,
+    Model,
+    NoiseModel,
+    SelfNoiseModel,
+    Transition,
+)
 
 
 def test_by_default_loads_are_viscous_and_noise_is_of_the_tones():
     model = Model()
-    assert model.loads.viscous and model.loads.stall_delay and model.loads.transition.n_crit == 5.0
+    assert model.loads.viscous and model.loads.stall_delay
+    assert model.loads.transition.completed() == Transition(5.0, FREE, FREE)
     assert model.noise.broadband is None
     assert SelfNoiseModel() == SelfNoiseModel(trip="none", tip="rounded")
 
@@ -36,6 +44,9 @@ def test_equal_models_are_one_model_to_the_compiler():
         (SelfNoiseModel, {"tip": "round"}, "tip must be one of rounded, square; it is 'round'"),
         (Transition, {"n_crit": 0.0}, "n_crit must be within 0.1 ... 30; it is 0"),
         (Transition, {"n_crit": float("nan")}, "n_crit must be within 0.1 ... 30; it is nan"),
+        (Transition, {"n_crit": 99.0}, "n_crit must be within 0.1 ... 30; it is 99"),
+        (Transition, {"trip_upper": -0.1}, "trip_upper must be within 0 ... 1; it is -0.1"),
+        (Transition, {"trip_lower": 1.2}, "trip_lower must be within 0 ... 1; it is 1.2"),
         (Fidelity, {"n_chordwise": 1}, "n_chordwise must be within 2 ... 100; it is 1"),
         (Fidelity, {"n_spanwise": 0}, "n_spanwise must be within 2 ... 400; it is 0"),
         (Fidelity, {"n_contour": 4}, "n_contour must be within 5 ... 1001; it is 4"),
@@ -58,3 +69,35 @@ def test_records_cannot_be_changed_under_a_result():
     for record in (Model(), LoadModel(), Fidelity()):
         with pytest.raises(dataclasses.FrozenInstanceError):
             setattr(record, dataclasses.fields(record)[0].name, None)
+
+
+def test_what_is_asked_of_transition_goes_before_the_description_and_that_before_the_defaults():
+    asked, described = Transition(n_crit=9.0), Transition(n_crit=7.0, trip_upper=0.1)
+    assert asked.completed(described) == Transition(9.0, 0.1, FREE)
+    assert Transition().completed(described) == Transition(7.0, 0.1, FREE)
+    assert asked.completed(described).upside_down == Transition(9.0, FREE, 0.1)
+    assert str(asked.completed()) == "n_crit 9"
+    said = "n_crit 9, trips at x/c 0.1 (upper) and free (lower)"
+    assert str(asked.completed(described)) == said
+
+
+@pytest.mark.parametrize(
+    ("upper", "lower", "word", "trip"),
+    [
+        (FREE, FREE, "none", "none"),
+        (0.05, FREE, "none", "none"),  # the other side sheds its vortices
+        (0.05, 0.9, "none", "none"),
+        (0.05, 0.1, "none", "light"),
+        (0.0, 0.5, "none", "light"),
+        (0.05, 0.1, "heavy", "heavy"),  # what is asked of the noise alone
+        (FREE, FREE, "heavy", "heavy"),
+    ],
+)
+def test_blades_tripped_on_both_sides_are_tripped_in_the_noise(upper, lower, word, trip):
+    model = Model(
+        LoadModel(transition=Transition(trip_upper=upper)), NoiseModel(SelfNoiseModel(word))
+    )
+    completed = model.completed(Transition(n_crit=3.0, trip_lower=lower))
+    assert completed.loads.transition == Transition(3.0, upper, lower)
+    assert completed.noise.broadband == SelfNoiseModel(trip)
+    assert completed.completed(Transition()) == completed  # a saved result, asked again

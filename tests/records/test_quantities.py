@@ -11,7 +11,7 @@ import pytest
 from propmdao.propeller.changes import Change
 from propmdao.records.air import Air
 from propmdao.records.listening import Listening
-from propmdao.records.models import LoadModel, NoiseModel, SelfNoiseModel
+from propmdao.records.models import LoadModel, NoiseModel, SelfNoiseModel, Transition
 from propmdao.records.quantities import (
     ASKED,
     BROADBAND_LEVELS,
@@ -29,6 +29,7 @@ RECORDS = {
     "point.air": Air,
     "change": Change,
     "model.loads": LoadModel,
+    "model.loads.transition": Transition,
     "model.noise": NoiseModel,
     "model.noise.broadband": SelfNoiseModel,
     "listening": Listening,
@@ -61,7 +62,7 @@ def test_what_may_be_asked_is_a_field_of_its_record_with_the_same_default(quanti
 
 
 def test_every_number_of_point_air_and_change_stands_in_the_table():
-    for record in ("point", "point.air", "change"):
+    for record in ("point", "point.air", "change", "model.loads.transition"):
         named = {quantity.name for quantity in ASKED.values() if quantity.record == record}
         assert named == {field.name for field in dataclasses.fields(RECORDS[record])} - {"air"}
 
@@ -71,7 +72,7 @@ def test_every_number_of_point_air_and_change_stands_in_the_table():
     [
         quantity
         for quantity in ASKED.values()
-        if quantity.record in ("point", "point.air", "change")
+        if quantity.record in ("point", "point.air", "change", "model.loads.transition")
     ],
     ids=lambda quantity: quantity.name,
 )

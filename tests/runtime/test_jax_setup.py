@@ -9,6 +9,8 @@ from pathlib import Path
 
 import pytest
 
+from propmdao.runtime.caches import FOLDER_VARIABLE
+
 CODE = """
 import propmdao.{room}, jax, jax.numpy as jnp
 print(jnp.ones(1).dtype, jax.config.values["jax_compilation_cache_dir"])
@@ -21,7 +23,7 @@ def import_room(room: str = "aerodynamics", **environment: str | Path) -> tuple[
     surroundings = {
         key: value
         for key, value in os.environ.items()
-        if not key.startswith("JAX_") and key != "XDG_CACHE_HOME"
+        if not key.startswith("JAX_") and key not in ("XDG_CACHE_HOME", FOLDER_VARIABLE)
     }
     result = subprocess.run(
         [sys.executable, "-c", CODE.format(room=room)],

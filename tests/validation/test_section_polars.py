@@ -21,16 +21,22 @@ from propmdao.aerodynamics.sections.polars.user_table import PolarError
 from propmdao.formats.polars import read_polar
 from propmdao.propeller.airfoils.library import find_airfoil
 from propmdao.propeller.description import Propeller
+from propmdao.records.models import Transition
 
 SECTIONS = {"e63": "E63_T1_Re*", "clarky": "CLARK_Y_AIRFOIL_T1_Re*"}
 #: Angles within -4..8 deg at most; one size compiles once.
 MOST = 32
 
 
-def differences(reference_data: Path, airfoil: str) -> np.ndarray:
+def differences(
+    reference_data: Path,
+    airfoil: str,
+    transition: Transition = Transition(),  # noqa: B008
+) -> np.ndarray:
     """Rows of Re, mean |dcl|, mean |dcd|, mean dcd/cd, mean |dcm| of an airfoil."""
     section, r = find_airfoil(airfoil), np.array([0.5, 1.0])
-    polars = polars_for(Propeller("x", 1.0, 2, r, 0.1 * r, r, [(0.0, airfoil)]))
+    described = Propeller("x", 1.0, 2, r, 0.1 * r, r, [(0.0, airfoil)])
+    polars = polars_for(described, transition=transition)
     table = section_tables(
         polars,
         jnp.tile(polars.weights[:1], (MOST, 1)),
@@ -81,3 +87,14 @@ def test_differences_from_xflr5_are_those_measured(reference_data: Path, airfoil
     np.testing.assert_allclose(measured[:, 1], expected[:, 1], rtol=0.1)
     np.testing.assert_allclose(measured[:, 2], expected[:, 2], rtol=0.1)
     np.testing.assert_allclose(measured[:, 3], expected[:, 3], atol=0.003)
+
+
+@pytest.mark.parametrize(("airfoil", "n_crit"), [("e63", 6.0), ("clarky", 7.0)])
+def test_most_of_the_difference_is_that_of_n_crit(
+    reference_data: Path, airfoil: str, n_crit: float
+) -> None:
+    """With the n_crit of the polars, between two tables or one of them."""
+    at_five = differences(reference_data, airfoil)
+    at_own = differences(reference_data, airfoil, Transition(n_crit))
+    assert at_own[:, 1].max() < 0.023 and np.abs(at_own[:, 3]).max() < 0.025
+    assert (at_own[:, 1:3].mean(axis=0) < 0.7 * at_five[:, 1:3].mean(axis=0)).all()

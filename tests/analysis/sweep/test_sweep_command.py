@@ -125,6 +125,7 @@ def test_help_explains_every_option(capsys: pytest.CaptureFixture[str]) -> None:
     for option in (
         "--rpm --thrust --speed --rho --twist-offset --chord-factor --diameter --blades"
         " --points --samples --seed --inviscid --workers --out --broadband --trip"
+        " --n-crit --trip-upper --trip-lower"
         " --arc --point --circle --hemisphere --grid --ground --level --absorption"
     ).split():
         assert option in text

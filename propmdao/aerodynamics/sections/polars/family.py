@@ -9,7 +9,8 @@ import jax.numpy as jnp
 import numpy as np
 import numpy.typing as npt
 
-from propmdao.aerodynamics.sections.polars.high_angle import ALPHA, FloatArray, IntArray, all_angles
+from propmdao.aerodynamics.sections.polars.attached import AttachedPolars
+from propmdao.aerodynamics.sections.polars.high_angle import ALPHA, FloatArray, all_angles
 from propmdao.aerodynamics.sections.polars.interpolation import clamped_stencil, dense
 from propmdao.aerodynamics.sections.polars.table import PolarRangeWarning, PolarTable
 from propmdao.geometry.blade import Blade, SpanInterpolation
@@ -143,30 +144,39 @@ def warn_outside_sections(polars: SectionPolars, blade: Blade, r_over_R: npt.Arr
             )
 
 
-def shape_values(coefficients: FloatArray, low: IntArray, high: IntArray) -> FloatArray:
+def shape_values(upright: AttachedPolars, upside_down: AttachedPolars) -> FloatArray:
     """Continue a shape's polars through all angles and mirror them to negative camber.
 
     Parameters
     ----------
-    coefficients : (n_camber, n_thickness, 3, n_re, n_attached) array
-        Coefficients cl, cd, cm near attached flow for cambers from 0 up.
-    low, high : (n_camber, n_thickness, n_re) arrays of int
-        Positions of the angles between which the coefficients hold, as
-        `propmdao.aerodynamics.sections.polars.high_angle.all_angles` takes them.
+    upright : AttachedPolars
+        Polars of the shape.
+    upside_down : AttachedPolars
+        The same with the trips of the upper and the lower side exchanged: a section of negative
+        camber is the same section seen from below. The same object where both trips are equal.
 
     Returns
     -------
     (2 n_camber - 1, n_thickness, 3, n_re, n_alpha) array
-        Coefficients cl, ln(cd), cm at all angles; a section upside down is the same section seen
-        from below.
+        Coefficients cl, ln(cd), cm at all angles.
     """
-    cl, cd, cm = np.moveaxis(coefficients, 2, 0)
+    above = _around(upright)
+    below = above if upside_down is upright else _around(upside_down)
+    turned = below[::-1, ..., ::-1] * np.array([-1.0, 1.0, -1.0])[:, None, None]
+    # Without camber both are the same section, but for the rounding of the file.
+    flat_section = 0.5 * (turned[-1:] + above[:1])
+    return np.concatenate([turned[:-1], flat_section, above[1:]])
+
+
+def _around(polars: AttachedPolars) -> FloatArray:
+    """Coefficients cl, ln(cd), cm at all angles, (n_camber, n_thickness, 3, n_re, n_alpha)."""
+    cl, cd, cm = np.moveaxis(polars.coefficients, 2, 0)
     rows = (-1, cl.shape[-1])
     flat = all_angles(
-        cl.reshape(rows), cd.reshape(rows), cm.reshape(rows), low.ravel(), high.ravel()
+        cl.reshape(rows),
+        cd.reshape(rows),
+        cm.reshape(rows),
+        polars.low.ravel(),
+        polars.high.ravel(),
     )
-    upright = np.moveaxis(flat.reshape(*low.shape, 3, ALPHA.size), -2, -3)
-    turned = upright[::-1, ..., ::-1] * np.array([-1.0, 1.0, -1.0])[:, None, None]
-    # Without camber both are the same section, but for the rounding of the file.
-    flat_section = 0.5 * (turned[-1:] + upright[:1])
-    return np.concatenate([turned[:-1], flat_section, upright[1:]])
+    return np.moveaxis(flat.reshape(*polars.low.shape, 3, ALPHA.size), -2, -3)

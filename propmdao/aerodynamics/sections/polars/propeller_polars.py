@@ -10,20 +10,34 @@ from pathlib import Path
 
 import jax.numpy as jnp
 import numpy as np
+import numpy.typing as npt
 
+from propmdao.aerodynamics.sections.polars.attached import (
+    FINE,
+    AttachedPolars,
+    packed,
+    unpacked,
+)
 from propmdao.aerodynamics.sections.polars.family import SectionPolars, shape_values
-from propmdao.aerodynamics.sections.polars.high_angle import ALPHA, FloatArray
+from propmdao.aerodynamics.sections.polars.high_angle import (
+    ALPHA,
+    ATTACHED_DEG,
+    FloatArray,
+)
 from propmdao.aerodynamics.sections.polars.interpolation import clamped_stencil, dense
-from propmdao.aerodynamics.sections.polars.neuralfoil_tables import REYNOLDS, neuralfoil_grid
+from propmdao.aerodynamics.sections.polars.neuralfoil_tables import (
+    REYNOLDS,
+    neuralfoil_grid,
+    neuralfoil_settings,
+)
 from propmdao.aerodynamics.sections.polars.shipped import (
     CAMBER,
     CLARKY_SHARES,
     SHAPES,
-    SHIPPED_N_CRIT,
     THICKNESS,
-    limits,
     shape,
-    shipped_tables,
+    shipped_polars,
+    shipped_shares,
 )
 from propmdao.aerodynamics.sections.polars.sources import find_sources
 from propmdao.aerodynamics.sections.polars.table import PolarSubstituteWarning, PolarTable
@@ -31,6 +45,11 @@ from propmdao.aerodynamics.sections.polars.user_table import ANY_REYNOLDS
 from propmdao.propeller.airfoils.library import find_airfoil
 from propmdao.propeller.description import Propeller
 from propmdao.records.models import Transition
+from propmdao.runtime.caches import kept_arrays
+from propmdao.runtime.terminal import print_line
+
+# Version of the files of polars that are kept, a part of their keys.
+_FORMAT = 1
 
 
 @dataclasses.dataclass(frozen=True)
@@ -73,16 +92,18 @@ def polars_for(
         folder and ending; it goes before the catalogue. It is taken at any camber and thickness,
         and at any transition: a design that changes them needs polars that know them.
     transition : Transition
-        Transition of the boundary layers to turbulent flow. The catalogue's tables are made at
-        `propmdao.aerodynamics.sections.polars.shipped.SHIPPED_N_CRIT`; at any other n_crit
-        NeuralFoil makes the tables of all shapes.
+        Transition of the boundary layers to turbulent flow; what it leaves open the propeller's
+        description says, or the defaults. The catalogue has tables at
+        `propmdao.aerodynamics.sections.polars.shipped.SHIPPED`, and interpolates between them in
+        n_crit; at any other transition NeuralFoil makes the tables of all shapes.
 
     Returns
     -------
     SectionPolars
         Polars of E63, Clark-Y, their blends and NACA 4-digit sections with their camber at 0.4 c
         from the catalogue, whatever their names; of other sections from NeuralFoil, where it is
-        installed (about 15 s per airfoil). `sources.polar_sources` tells which is which.
+        installed: about half a minute per airfoil, once on a machine, for the result is kept in
+        the user's cache folder. `sources.polar_sources` tells which is which.
 
     Raises
     ------
@@ -95,6 +116,7 @@ def polars_for(
     PolarSubstituteWarning
         If an airfoil has no polars and NACA 4-digit ones stand in.
     """
+    transition = transition.completed(propeller.transition)
     sources = find_sources(propeller, own, transition)
     for name, source in sources.items():
         if source.substitute:
@@ -106,7 +128,7 @@ def polars_for(
     }
     weights = _shape_weights(propeller, [sources[name].shape for _, name in propeller.airfoils])
     tables = [
-        user.get(name) or _Values(np.log(REYNOLDS), _family_values(name, transition.n_crit))
+        user.get(name) or _Values(np.log(REYNOLDS), _family_values(name, transition))
         for name in weights
     ]
     # A table without Reynolds numbers is the same at those of the others.
@@ -168,10 +190,10 @@ def _shape_weights(propeller: Propeller, shapes: list[str]) -> dict[str, FloatAr
     return weights
 
 
-def _family_values(name: str, n_crit: float) -> FloatArray:
+def _family_values(name: str, transition: Transition) -> FloatArray:
     """Tables of a shape of the catalogue, or of any airfoil by NeuralFoil."""
-    if name in SHAPES and n_crit == SHIPPED_N_CRIT:
-        return shipped_tables().values[name]
+    if name in SHAPES and shipped_shares(transition):
+        return _shipped_values(name, transition)
     if name in SHAPES:
         camber, thickness = shape(name)
     else:
@@ -180,15 +202,57 @@ def _family_values(name: str, n_crit: float) -> FloatArray:
         # Camber added to a flat section has the mean line that `Blade` gives it.
         camber = section.camber / peak if peak else shape("naca4")[0]
         thickness = section.thickness / section.max_thickness
-    return _neuralfoil_values(camber.tobytes(), thickness.tobytes(), n_crit)
+    return _neuralfoil_values(name, camber.tobytes(), thickness.tobytes(), transition)
+
+
+@functools.lru_cache(maxsize=16)
+def _shipped_values(name: str, transition: Transition) -> FloatArray:
+    """Tables of a shape that ship, or between those that do."""
+    values = np.zeros(())
+    for made, share in shipped_shares(transition).items():
+        polars = shipped_polars(name, made)
+        values = values + share * _values_at_all_angles(polars, polars)
+    return values
 
 
 @functools.lru_cache(maxsize=8)
-def _neuralfoil_values(camber: bytes, thickness: bytes, n_crit: float) -> FloatArray:
+def _neuralfoil_values(
+    name: str, camber: bytes, thickness: bytes, transition: Transition
+) -> FloatArray:
     """Tables of a shape by NeuralFoil; by its bytes, so that a changed file is a new shape."""
-    shapes = np.frombuffer(camber), np.frombuffer(thickness)
-    coefficients, confidence = neuralfoil_grid(*shapes, CAMBER, THICKNESS, n_crit)
-    return shape_values(coefficients, *limits(coefficients, confidence))
+    upright = _kept_polars(name, camber, thickness, transition)
+    upside_down = upright
+    if transition.upside_down != transition:
+        upside_down = _kept_polars(name, camber, thickness, transition.upside_down)
+    return _values_at_all_angles(upright, upside_down)
+
+
+def _kept_polars(
+    name: str, camber: bytes, thickness: bytes, transition: Transition
+) -> AttachedPolars:
+    """Polars of a shape that NeuralFoil makes, once on a machine."""
+
+    def make() -> dict[str, npt.NDArray]:
+        print_line(
+            f"propmdao: NeuralFoil makes the polars of airfoil '{name}' at {transition}, once on"
+            " this machine: half a minute or more",
+            error=True,
+        )
+        shapes = np.frombuffer(camber), np.frombuffer(thickness)
+        return packed("polars", neuralfoil_grid(*shapes, CAMBER, THICKNESS, transition), FINE)
+
+    grids = [grid.tobytes() for grid in (CAMBER, THICKNESS, REYNOLDS, ATTACHED_DEG)]
+    settings = f"{_FORMAT} {neuralfoil_settings()} {dataclasses.astuple(transition)}"
+    key = b"".join([camber, thickness, *grids, settings.encode()])
+    return unpacked(kept_arrays("polars", key, make), "polars")
+
+
+def _values_at_all_angles(upright: AttachedPolars, upside_down: AttachedPolars) -> FloatArray:
+    """Values of a shape from its coefficients near attached flow, whoever has made them.
+
+    What corrects the coefficients of all sections alike stands here, before they are continued.
+    """
+    return shape_values(upright, upside_down)
 
 
 def _merged(grid: FloatArray, second: FloatArray) -> FloatArray:

@@ -1,18 +1,23 @@
-"""The tables that ship: the shapes they hold, how they are packed in their file."""
+"""The tables that ship: the shapes and transitions they hold, their file."""
 
 from __future__ import annotations
 
-import dataclasses
-import functools
 from importlib.resources import files
 from pathlib import Path
 from typing import IO
 
+import jax.numpy as jnp
 import numpy as np
-import numpy.typing as npt
 
-from propmdao.aerodynamics.sections.polars.family import shape_values
-from propmdao.aerodynamics.sections.polars.high_angle import FloatArray, IntArray, trusted_range
+from propmdao.aerodynamics.sections.polars.attached import (
+    COARSE,
+    FINE,
+    AttachedPolars,
+    packed,
+    unpacked,
+)
+from propmdao.aerodynamics.sections.polars.high_angle import FloatArray
+from propmdao.aerodynamics.sections.polars.interpolation import clamped_stencil, dense
 from propmdao.aerodynamics.sections.polars.neuralfoil_tables import (
     REYNOLDS,
     neuralfoil_grid,
@@ -20,6 +25,7 @@ from propmdao.aerodynamics.sections.polars.neuralfoil_tables import (
 )
 from propmdao.propeller.airfoils.airfoil import naca4
 from propmdao.propeller.airfoils.library import find_airfoil
+from propmdao.records.models import FREE, Transition
 from propmdao.runtime.output_files import replacing
 
 #: Maximum camber and thickness over chord of the tables; negative camber follows by symmetry.
@@ -29,29 +35,14 @@ THICKNESS: FloatArray = np.array([0.03, 0.045, 0.065, 0.09, 0.12, 0.155, 0.19, 0
 CLARKY_SHARES = {"e63": 0.0, "e63-clarky": 0.5, "clarky": 1.0}
 #: Shapes of the file: the NACA 4-digit series with its maximum camber at 0.4 c, and the blends.
 SHAPES = ("naca4", *CLARKY_SHARES)
-#: Critical amplification of e^n transition in the tables, the same for every blade: moulded edges,
-#: and air that other blades have stirred. A clean wind tunnel has 9 to 12, a dirty one 4 to 8
-#: (Drela, XFOIL user guide); studies/validation/aerodynamic_sensitivity.py shows what it changes.
-SHIPPED_N_CRIT = 5.0
-
-#: Units of the whole numbers in the file: of cl, ln(cd), cm.
-_UNIT = np.array([2e-4, 2e-4, 2e-5])[:, None, None]
-
-
-@dataclasses.dataclass(frozen=True)
-class ShippedTables:
-    """Tables of all shapes and how they were made.
-
-    Attributes
-    ----------
-    values : dict of (n_camber, n_thickness, 3, n_re, n_alpha) arrays
-        Coefficients cl, ln(cd), cm by shape; the cambers are `CAMBER` and its mirror image.
-    settings : str
-        Program, version and settings, one line.
-    """
-
-    values: dict[str, FloatArray]
-    settings: str
+#: Critical amplification of e^n transition in the tables without trips. The default, 5, is the same
+#: for every blade: moulded edges, and air that other blades have stirred. A clean wind tunnel has
+#: 9 to 12, a dirty one 4 to 8 (Drela, XFOIL user guide);
+#: studies/validation/aerodynamic_sensitivity.py shows what it changes.
+SHIPPED_N_CRIT = (3.0, 5.0, 7.0, 9.0)
+#: Transition of the table with trips: both sides, as wind tunnels trip sections.
+SHIPPED_TRIPPED = Transition(5.0, 0.05, 0.05)
+SHIPPED = (*(Transition(n_crit, FREE, FREE) for n_crit in SHIPPED_N_CRIT), SHIPPED_TRIPPED)
 
 
 def shape(name: str) -> tuple[FloatArray, FloatArray]:
@@ -78,106 +69,90 @@ def shape(name: str) -> tuple[FloatArray, FloatArray]:
     return camber / camber.max(), thickness / thickness.max()
 
 
+def shipped_shares(transition: Transition) -> dict[Transition, float]:
+    """Tell of which tables that ship those of a transition are made.
+
+    Parameters
+    ----------
+    transition : Transition
+        Transition of the boundary layers, completed.
+
+    Returns
+    -------
+    dict of Transition to float
+        Shares, which sum to 1, by the transition of the table: one, or for an n_crit between those
+        of the tables the weights of a C1 interpolation. Empty where the tables do not reach.
+    """
+    if transition in SHIPPED:
+        return {transition: 1.0}
+    untripped = transition.trip_upper == FREE and transition.trip_lower == FREE
+    n_crit, nodes = transition.n_crit, jnp.asarray(SHIPPED_N_CRIT)
+    if n_crit is None or not (untripped and SHIPPED_N_CRIT[0] <= n_crit <= SHIPPED_N_CRIT[-1]):
+        return {}
+    weights = dense(*clamped_stencil(nodes, jnp.array([n_crit])), nodes.size)[0]
+    return {made: float(w) for made, w in zip(SHIPPED, weights, strict=False) if w != 0.0}
+
+
 def generate(path: Path) -> None:
-    """Make the file of tables; needs NeuralFoil and takes about a minute.
+    """Make the file of tables; needs NeuralFoil and takes five to twenty minutes.
 
     Parameters
     ----------
     path : Path
         File to write.
     """
-    packed, lows, highs = [], [], []
-    for name in SHAPES:
-        coefficients, confidence = neuralfoil_grid(*shape(name), CAMBER, THICKNESS, SHIPPED_N_CRIT)
-        low, high = limits(coefficients, confidence)
-        coefficients[:, :, 1] = np.log(coefficients[:, :, 1])
-        # Second differences over angle are small whole numbers, which pack to a third.
-        whole = np.round(coefficients / _UNIT).astype(np.int32)
-        packed.append(np.diff(whole, n=2, axis=-1, prepend=np.zeros((*whole.shape[:-1], 2), int)))
-        lows.append(low)
-        highs.append(high)
+    members = {
+        "camber": CAMBER,
+        "thickness": THICKNESS,
+        "reynolds": REYNOLDS,
+        "settings": np.array(neuralfoil_settings()),
+    }
+    for transition in SHIPPED:
+        unit = FINE if transition == Transition().completed() else COARSE
+        for name in SHAPES:
+            polars = neuralfoil_grid(*shape(name), CAMBER, THICKNESS, transition)
+            members |= packed(_member(name, transition), polars, unit)
     with replacing(path) as file:
-        np.savez_compressed(
-            file,
-            packed=np.stack(packed).astype(np.int16),
-            low=np.stack(lows).astype(np.int8),
-            high=np.stack(highs).astype(np.int8),
-            camber=CAMBER,
-            thickness=THICKNESS,
-            reynolds=REYNOLDS,
-            settings=np.array(neuralfoil_settings(SHIPPED_N_CRIT)),
-        )
+        np.savez_compressed(file, allow_pickle=False, **members)
 
 
-def limits(coefficients: FloatArray, confidence: FloatArray) -> tuple[IntArray, IntArray]:
-    """Find between which angles each polar of a grid holds, by `trusted_range`.
+def _member(name: str, transition: Transition) -> str:
+    """Name of a table in the file."""
+    return f"{name} {SHIPPED.index(transition)}"
+
+
+def shipped_polars(name: str, transition: Transition) -> AttachedPolars:
+    """Read a table that ships, that one alone.
 
     Parameters
     ----------
-    coefficients : (n_camber, n_thickness, 3, n_re, n_attached) array
-        Coefficients as `neuralfoil_grid` returns them.
-    confidence : (n_camber, n_thickness, n_re, n_attached) array
-        NeuralFoil's confidence.
+    name : str
+        Name of the shape, one of `SHAPES`.
+    transition : Transition
+        Transition of the table, one of `SHIPPED`.
 
     Returns
     -------
-    low, high : (n_camber, n_thickness, n_re) arrays of int
-        Positions in `propmdao.aerodynamics.sections.polars.high_angle.ATTACHED_DEG`.
+    AttachedPolars
+        Polars of the shape.
     """
-    sure = confidence.reshape(-1, confidence.shape[-1])
-    low, high = trusted_range(coefficients[:, :, 0].reshape(sure.shape), sure)
-    return low.reshape(confidence.shape[:-1]), high.reshape(confidence.shape[:-1])
+    with _file() as file, np.load(file) as members:
+        return unpacked(members, _member(name, transition))
 
 
-def unpack(packed: npt.NDArray[np.int16]) -> FloatArray:
-    """Turn the whole numbers of the file into coefficients.
-
-    Parameters
-    ----------
-    packed : (..., 3, n_re, n_attached) array of int16
-        Second differences over angle.
+def shipped_settings() -> str:
+    """Tell how the tables that ship were made.
 
     Returns
     -------
-    array of the same shape
-        Coefficients cl, cd, cm.
+    str
+        Program, version and settings, one line.
     """
-    whole = np.cumsum(np.cumsum(packed.astype(np.int64), axis=-1), axis=-1)
-    coefficients: FloatArray = whole * _UNIT
-    coefficients[..., 1, :, :] = np.exp(coefficients[..., 1, :, :])
-    return coefficients
+    with _file() as file, np.load(file) as members:
+        return str(members["settings"])
 
 
-def read_tables(file: str | Path | IO[bytes]) -> ShippedTables:
-    """Read a file of tables.
-
-    Parameters
-    ----------
-    file : path or binary file
-        File that `generate` has written.
-
-    Returns
-    -------
-    ShippedTables
-        The tables, continued through all angles.
-    """
-    with np.load(file) as data:
-        coefficients = unpack(data["packed"])
-        low, high = data["low"].astype(np.intp), data["high"].astype(np.intp)
-        settings = str(data["settings"])
-    values = {name: shape_values(coefficients[k], low[k], high[k]) for k, name in enumerate(SHAPES)}
-    return ShippedTables(values, settings)
-
-
-@functools.cache
-def shipped_tables() -> ShippedTables:
-    """Get the tables of the catalogue, read once.
-
-    Returns
-    -------
-    ShippedTables
-        The tables.
-    """
+def _file() -> IO[bytes]:
+    """File of the tables, opened."""
     file = files("propmdao.propeller.catalog") / "polars" / "sections.npz"
-    with file.open("rb") as opened:
-        return read_tables(opened)
+    return file.open("rb")

@@ -10,7 +10,12 @@ import numpy as np
 
 from propmdao.aerodynamics.sections.polars.high_angle import ALPHA, FloatArray
 from propmdao.aerodynamics.sections.polars.neuralfoil_tables import neuralfoil_installed
-from propmdao.aerodynamics.sections.polars.shipped import SHIPPED_N_CRIT, shape
+from propmdao.aerodynamics.sections.polars.shipped import (
+    SHIPPED_N_CRIT,
+    SHIPPED_TRIPPED,
+    shape,
+    shipped_shares,
+)
 from propmdao.aerodynamics.sections.polars.table import PolarError, PolarTable
 from propmdao.propeller.airfoils.airfoil import Airfoil
 from propmdao.propeller.airfoils.library import find_airfoil
@@ -58,7 +63,7 @@ def polar_sources(
     own : dict of PolarTable, optional
         The user's tables, by airfoil.
     transition : Transition
-        Transition of the boundary layers to turbulent flow.
+        Transition of the boundary layers to turbulent flow, where the propeller's does not hold.
 
     Returns
     -------
@@ -89,7 +94,7 @@ def find_sources(
         The user's tables, by the airfoil's name in the propeller, or its file's name without
         folder and ending.
     transition : Transition
-        Transition of the boundary layers to turbulent flow.
+        Transition of the boundary layers to turbulent flow, where the propeller's does not hold.
 
     Returns
     -------
@@ -102,23 +107,24 @@ def find_sources(
         If a user's table is no table of one section, or polars at this transition take NeuralFoil
         and it is not installed.
     """
-    return {name: _source(name, own or {}, transition.n_crit) for _, name in propeller.airfoils}
+    transition = transition.completed(propeller.transition)
+    return {name: _source(name, own or {}, transition) for _, name in propeller.airfoils}
 
 
-def _source(name: str, own: Mapping[str, PolarTable], n_crit: float) -> PolarSource:
+def _source(name: str, own: Mapping[str, PolarTable], transition: Transition) -> PolarSource:
     """Decide for one airfoil: the user's table goes first, then the catalogue, then NeuralFoil."""
     table = _own_table(name, own)
     if table is not None:
         return PolarSource(f"{name} of the user", "user's table", table)
-    installed, shipped = neuralfoil_installed(), n_crit == SHIPPED_N_CRIT
+    installed, shipped = neuralfoil_installed(), bool(shipped_shares(transition))
     if not (installed or shipped):
+        low, high = SHIPPED_N_CRIT[0], SHIPPED_N_CRIT[-1]
         raise PolarError(
-            f"polars of airfoil '{name}' at n_crit {n_crit:g} are made by NeuralFoil, which is not "
-            "installed: pip install 'propmdao[polars]', or take the catalogue's n_crit "
-            f"{SHIPPED_N_CRIT:g}"
+            f"polars of airfoil '{name}' at {transition} are made by NeuralFoil, which is not "
+            f"installed: pip install 'propmdao[polars]', or take the catalogue's n_crit {low:g} to "
+            f"{high:g} without trips, or {SHIPPED_TRIPPED}"
         )
-    catalogue = f"catalogue, n_crit {SHIPPED_N_CRIT:g}"
-    neuralfoil = f"NeuralFoil, n_crit {n_crit:g}"
+    catalogue, neuralfoil = f"catalogue, {transition}", f"NeuralFoil, {transition}"
     plain = _catalogue_shape(name)
     if plain is not None:
         return PolarSource(plain, catalogue if shipped else neuralfoil)
