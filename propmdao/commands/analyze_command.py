@@ -72,6 +72,7 @@ ASKED_OPTIONS = (
     "twist_offset_deg",
     "viscous",
     "stall_delay",
+    "measured_drag",
 )
 
 
@@ -171,11 +172,12 @@ def _analyze(options: argparse.Namespace) -> None:
                 f" {', '.join(dict.fromkeys(names))}"
             )
     with warning_lines("analyze"):
-        polars = polars_for(propeller, own) if options.viscous else None
+        drag = {"measured_drag": options.measured_drag}
+        polars = polars_for(propeller, own, **drag) if options.viscous else None
         analyses = [analyze(propeller, polars=polars, **point) for point in points]
     if polars is not None:
         files = {airfoil: ", ".join(names) for airfoil, *names in options.polar}
-        sources = polar_sources(propeller, own)
+        sources = polar_sources(propeller, own, **drag)
         sources |= {name: files[key] for name in sources if (key := _key(name, files))}
         analyses = [dataclasses.replace(analysis, polars=sources) for analysis in analyses]
     results = [analysis.to_dict() for analysis in analyses]
@@ -195,8 +197,12 @@ def _key(airfoil: str, keys: Iterable[str]) -> str | None:
 
 def _check(options: argparse.Namespace) -> None:
     """Refuse options that do not go together, before the work."""
-    if not options.viscous and (options.polar or not options.stall_delay):
-        raise ValueError("--inviscid has no sections: --polar and --no-stall-delay do not go along")
+    of_sections = options.stall_delay and options.measured_drag and not options.polar
+    if not options.viscous and not of_sections:
+        raise ValueError(
+            "--inviscid has no sections: --polar, --no-stall-delay and --computed-drag do not go"
+            " along"
+        )
     placed = [*options.arc, *options.point, *options.circle, *options.hemisphere, *options.grid]
     for option, value in (("--wav", options.wav), ("--figures", options.figures)):
         if value is None:

@@ -55,12 +55,16 @@ class LoadModel:
         Law by which the prescribed wake moves.
     transition : Transition
         Transition of the boundary layers in the sections' polars.
+    measured_drag : bool
+        Whether the drag of the catalogue's and of NeuralFoil's polars is brought to the level that
+        wind tunnels measure at equal lift; False leaves it as computed.
     """
 
     viscous: bool = True
     stall_delay: bool = True
     wake: WakeLaw = dataclasses.field(default_factory=WakeLaw)
     transition: Transition = Transition()
+    measured_drag: bool = True
 
 
 @dataclasses.dataclass(frozen=True)

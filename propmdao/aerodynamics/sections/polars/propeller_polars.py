@@ -14,6 +14,7 @@ import numpy as np
 from propmdao.aerodynamics.sections.polars.family import SectionPolars, shape_values
 from propmdao.aerodynamics.sections.polars.high_angle import ALPHA, FloatArray
 from propmdao.aerodynamics.sections.polars.interpolation import clamped_stencil, dense
+from propmdao.aerodynamics.sections.polars.measured_drag import TUNNEL_N_CRIT, at_measured_level
 from propmdao.aerodynamics.sections.polars.neuralfoil_tables import REYNOLDS, neuralfoil_grid
 from propmdao.aerodynamics.sections.polars.shipped import (
     CAMBER,
@@ -61,6 +62,7 @@ def polars_for(
     propeller: Propeller,
     own: Mapping[str, PolarTable] | None = None,
     transition: Transition = Transition(),  # noqa: B008 - frozen
+    measured_drag: bool = True,
 ) -> SectionPolars:
     """Find the polars of a propeller's sections.
 
@@ -76,13 +78,17 @@ def polars_for(
         Transition of the boundary layers to turbulent flow. The catalogue's tables are made at
         `propmdao.aerodynamics.sections.polars.shipped.SHIPPED_N_CRIT`; at any other n_crit
         NeuralFoil makes the tables of all shapes.
+    measured_drag : bool
+        Whether drag is brought to the measured level
+        (`propmdao.aerodynamics.sections.polars.measured_drag`); else it is NeuralFoil's. The
+        user's tables are never changed.
 
     Returns
     -------
     SectionPolars
         Polars of E63, Clark-Y, their blends and NACA 4-digit sections with their camber at 0.4 c
         from the catalogue, whatever their names; of other sections from NeuralFoil, where it is
-        installed (about 15 s per airfoil). `sources.polar_sources` tells which is which.
+        installed (about half a minute per airfoil). `sources.polar_sources` tells which is which.
 
     Raises
     ------
@@ -95,7 +101,7 @@ def polars_for(
     PolarSubstituteWarning
         If an airfoil has no polars and NACA 4-digit ones stand in.
     """
-    sources = find_sources(propeller, own, transition)
+    sources = find_sources(propeller, own, transition, measured_drag)
     for name, source in sources.items():
         if source.substitute:
             warnings.warn(_substitute_message(name), PolarSubstituteWarning, stacklevel=2)
@@ -106,7 +112,8 @@ def polars_for(
     }
     weights = _shape_weights(propeller, [sources[name].shape for _, name in propeller.airfoils])
     tables = [
-        user.get(name) or _Values(np.log(REYNOLDS), _family_values(name, transition.n_crit))
+        user.get(name)
+        or _Values(np.log(REYNOLDS), _family_values(name, transition.n_crit, measured_drag))
         for name in weights
     ]
     # A table without Reynolds numbers is the same at those of the others.
@@ -168,10 +175,10 @@ def _shape_weights(propeller: Propeller, shapes: list[str]) -> dict[str, FloatAr
     return weights
 
 
-def _family_values(name: str, n_crit: float) -> FloatArray:
+def _family_values(name: str, n_crit: float, measured_drag: bool) -> FloatArray:
     """Tables of a shape of the catalogue, or of any airfoil by NeuralFoil."""
     if name in SHAPES and n_crit == SHIPPED_N_CRIT:
-        return shipped_tables().values[name]
+        return shipped_tables(measured_drag).values[name]
     if name in SHAPES:
         camber, thickness = shape(name)
     else:
@@ -180,15 +187,21 @@ def _family_values(name: str, n_crit: float) -> FloatArray:
         # Camber added to a flat section has the mean line that `Blade` gives it.
         camber = section.camber / peak if peak else shape("naca4")[0]
         thickness = section.thickness / section.max_thickness
-    return _neuralfoil_values(camber.tobytes(), thickness.tobytes(), n_crit)
+    return _neuralfoil_values(camber.tobytes(), thickness.tobytes(), n_crit, measured_drag)
 
 
 @functools.lru_cache(maxsize=8)
-def _neuralfoil_values(camber: bytes, thickness: bytes, n_crit: float) -> FloatArray:
+def _neuralfoil_values(
+    camber: bytes, thickness: bytes, n_crit: float, measured_drag: bool
+) -> FloatArray:
     """Tables of a shape by NeuralFoil; by its bytes, so that a changed file is a new shape."""
     shapes = np.frombuffer(camber), np.frombuffer(thickness)
     coefficients, confidence = neuralfoil_grid(*shapes, CAMBER, THICKNESS, n_crit)
-    return shape_values(coefficients, *limits(coefficients, confidence))
+    ends = limits(coefficients, confidence)
+    if measured_drag:
+        tunnel, _ = neuralfoil_grid(*shapes, CAMBER, THICKNESS, TUNNEL_N_CRIT)
+        coefficients = at_measured_level(coefficients, tunnel, REYNOLDS)
+    return shape_values(coefficients, *ends)
 
 
 def _merged(grid: FloatArray, second: FloatArray) -> FloatArray:

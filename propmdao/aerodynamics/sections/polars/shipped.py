@@ -13,6 +13,7 @@ import numpy.typing as npt
 
 from propmdao.aerodynamics.sections.polars.family import shape_values
 from propmdao.aerodynamics.sections.polars.high_angle import FloatArray, IntArray, trusted_range
+from propmdao.aerodynamics.sections.polars.measured_drag import TUNNEL_N_CRIT, at_measured_level
 from propmdao.aerodynamics.sections.polars.neuralfoil_tables import (
     REYNOLDS,
     neuralfoil_grid,
@@ -79,27 +80,27 @@ def shape(name: str) -> tuple[FloatArray, FloatArray]:
 
 
 def generate(path: Path) -> None:
-    """Make the file of tables; needs NeuralFoil and takes about a minute.
+    """Make the file of tables; needs NeuralFoil and takes about three minutes.
 
     Parameters
     ----------
     path : Path
         File to write.
     """
-    packed, lows, highs = [], [], []
+    packed, tunnel, lows, highs = [], [], [], []
     for name in SHAPES:
         coefficients, confidence = neuralfoil_grid(*shape(name), CAMBER, THICKNESS, SHIPPED_N_CRIT)
+        in_tunnel, _ = neuralfoil_grid(*shape(name), CAMBER, THICKNESS, TUNNEL_N_CRIT)
         low, high = limits(coefficients, confidence)
-        coefficients[:, :, 1] = np.log(coefficients[:, :, 1])
-        # Second differences over angle are small whole numbers, which pack to a third.
-        whole = np.round(coefficients / _UNIT).astype(np.int32)
-        packed.append(np.diff(whole, n=2, axis=-1, prepend=np.zeros((*whole.shape[:-1], 2), int)))
+        packed.append(pack(coefficients))
+        tunnel.append(pack(in_tunnel[:, :, :2]))
         lows.append(low)
         highs.append(high)
     with replacing(path) as file:
         np.savez_compressed(
             file,
-            packed=np.stack(packed).astype(np.int16),
+            packed=np.stack(packed),
+            tunnel=np.stack(tunnel),
             low=np.stack(lows).astype(np.int8),
             high=np.stack(highs).astype(np.int8),
             camber=CAMBER,
@@ -129,32 +130,55 @@ def limits(coefficients: FloatArray, confidence: FloatArray) -> tuple[IntArray, 
     return low.reshape(confidence.shape[:-1]), high.reshape(confidence.shape[:-1])
 
 
+def pack(coefficients: FloatArray) -> npt.NDArray[np.int16]:
+    """Turn coefficients into the whole numbers of the file.
+
+    Parameters
+    ----------
+    coefficients : (..., n, n_re, n_attached) array
+        The first n of the coefficients cl, cd, cm.
+
+    Returns
+    -------
+    array of int16 of the same shape
+        Second differences over angle: small whole numbers, which pack to a third.
+    """
+    values = coefficients.copy()
+    values[..., 1, :, :] = np.log(values[..., 1, :, :])
+    whole = np.round(values / _UNIT[: values.shape[-3]]).astype(np.int32)
+    start = np.zeros((*whole.shape[:-1], 2), int)
+    return np.diff(whole, n=2, axis=-1, prepend=start).astype(np.int16)
+
+
 def unpack(packed: npt.NDArray[np.int16]) -> FloatArray:
     """Turn the whole numbers of the file into coefficients.
 
     Parameters
     ----------
-    packed : (..., 3, n_re, n_attached) array of int16
+    packed : (..., n, n_re, n_attached) array of int16
         Second differences over angle.
 
     Returns
     -------
     array of the same shape
-        Coefficients cl, cd, cm.
+        The first n of the coefficients cl, cd, cm.
     """
     whole = np.cumsum(np.cumsum(packed.astype(np.int64), axis=-1), axis=-1)
-    coefficients: FloatArray = whole * _UNIT
+    coefficients: FloatArray = whole * _UNIT[: packed.shape[-3]]
     coefficients[..., 1, :, :] = np.exp(coefficients[..., 1, :, :])
     return coefficients
 
 
-def read_tables(file: str | Path | IO[bytes]) -> ShippedTables:
+def read_tables(file: str | Path | IO[bytes], measured_drag: bool = True) -> ShippedTables:
     """Read a file of tables.
 
     Parameters
     ----------
     file : path or binary file
         File that `generate` has written.
+    measured_drag : bool
+        Whether drag is brought to the measured level
+        (`propmdao.aerodynamics.sections.polars.measured_drag`); else it is NeuralFoil's.
 
     Returns
     -------
@@ -163,6 +187,8 @@ def read_tables(file: str | Path | IO[bytes]) -> ShippedTables:
     """
     with np.load(file) as data:
         coefficients = unpack(data["packed"])
+        if measured_drag:
+            coefficients = at_measured_level(coefficients, unpack(data["tunnel"]), REYNOLDS)
         low, high = data["low"].astype(np.intp), data["high"].astype(np.intp)
         settings = str(data["settings"])
     values = {name: shape_values(coefficients[k], low[k], high[k]) for k, name in enumerate(SHAPES)}
@@ -170,8 +196,13 @@ def read_tables(file: str | Path | IO[bytes]) -> ShippedTables:
 
 
 @functools.cache
-def shipped_tables() -> ShippedTables:
+def shipped_tables(measured_drag: bool = True) -> ShippedTables:
     """Get the tables of the catalogue, read once.
+
+    Parameters
+    ----------
+    measured_drag : bool
+        As of `read_tables`.
 
     Returns
     -------
@@ -180,4 +211,4 @@ def shipped_tables() -> ShippedTables:
     """
     file = files("propmdao.propeller.catalog") / "polars" / "sections.npz"
     with file.open("rb") as opened:
-        return read_tables(opened)
+        return read_tables(opened, measured_drag)

@@ -137,17 +137,18 @@ def test_sources_are_told_by_airfoil(
     own = {"clarky": section("clarky")}
     monkeypatch.setattr(sources, "neuralfoil_installed", lambda: True)
     assert polar_sources(described, own) == {
-        "e63": "catalogue, n_crit 5",
-        "naca2212": "NeuralFoil, n_crit 5",
+        "e63": "catalogue, n_crit 5, drag at the measured level",
+        "naca2212": "NeuralFoil, n_crit 5, drag at the measured level",
         "clarky": "user's table",
     }
     assert polar_sources(described, own, Transition(9.0)) == {
-        "e63": "NeuralFoil, n_crit 9",
-        "naca2212": "NeuralFoil, n_crit 9",
+        "e63": "NeuralFoil, n_crit 9, drag at the measured level",
+        "naca2212": "NeuralFoil, n_crit 9, drag at the measured level",
         "clarky": "user's table",
     }
     monkeypatch.setattr(sources, "neuralfoil_installed", lambda: False)
     with warnings.catch_warnings():
         warnings.simplefilter("error")  # `polars_for` has warned
         substitute = polar_sources(described, own)["naca2212"]
-    assert substitute == "catalogue, n_crit 5, a NACA 4-digit section in its place"
+    level = "drag at the measured level"
+    assert substitute == f"catalogue, n_crit 5, {level}, a NACA 4-digit section in its place"
