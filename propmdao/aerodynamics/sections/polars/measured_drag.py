@@ -51,7 +51,10 @@ _FIRST, _ZERO, _LAST = (
 
 
 def at_measured_level(
-    coefficients: FloatArray, tunnel: FloatArray, reynolds: FloatArray
+    coefficients: FloatArray,
+    tunnel: FloatArray,
+    reynolds: FloatArray,
+    level: tuple[float, float] = TUNNEL_LEVEL,
 ) -> FloatArray:
     """Bring the drag of polars to the measured level at each lift.
 
@@ -63,6 +66,8 @@ def at_measured_level(
         Coefficients cl, cd (and others, n >= 2) of the same sections at `TUNNEL_N_CRIT`.
     reynolds : (n_re,) array
         Reynolds numbers.
+    level : (float, float)
+        In place of `TUNNEL_LEVEL`, to fit it.
 
     Returns
     -------
@@ -72,24 +77,28 @@ def at_measured_level(
     """
     cl, cd = coefficients[..., 0, :, :], coefficients[..., 1, :, :]
     tunnel_cl, tunnel_cd = tunnel[..., 0, :, :], tunnel[..., 1, :, :]
-    upper = _logarithm(cl, cd, tunnel_cl, tunnel_cd, reynolds)
+    upper = _logarithm(cl, cd, tunnel_cl, tunnel_cd, reynolds, level)
     turned = -cl[..., ::-1], cd[..., ::-1], -tunnel_cl[..., ::-1], tunnel_cd[..., ::-1]
-    lower = _logarithm(*turned, reynolds)
+    lower = _logarithm(*turned, reynolds, level)
     corrected = coefficients.copy()
     corrected[..., 1, :, :] = cd * np.exp(upper + lower[..., ::-1])
     return corrected
 
 
 def _logarithm(
-    cl: FloatArray, cd: FloatArray, tunnel_cl: FloatArray, tunnel_cd: FloatArray, re: FloatArray
+    cl: FloatArray,
+    cd: FloatArray,
+    tunnel_cl: FloatArray,
+    tunnel_cd: FloatArray,
+    re: FloatArray,
+    level: tuple[float, float],
 ) -> FloatArray:
     """Logarithm of corrected over given drag on the side of positive lift, 0 on the other."""
     lift, tunnel_lift = _rising(cl), _rising(tunnel_cl)
     ratio = _at_lift(lift, tunnel_lift, np.log(tunnel_cd)) - np.log(cd)
     ratio = _LARGEST_LOGARITHM * np.tanh(ratio / _LARGEST_LOGARITHM)
-    low, high = TUNNEL_LEVEL
-    level = low + (high - low) * _step(np.log(re), *np.log(_LEVEL_REYNOLDS))
-    total = _smoothed(ratio) + level[:, None]
+    over_re = level[0] + (level[1] - level[0]) * _step(np.log(re), *np.log(_LEVEL_REYNOLDS))
+    total = _smoothed(ratio) + over_re[:, None]
     stall = np.maximum(lift[..., -1:], 1e-9)
     # Measured sections have none at lift against their camber: it starts as far below zero lift as
     # zero angle is above.
@@ -125,8 +134,8 @@ def _at_lift(lift: FloatArray, known_lift: FloatArray, values: FloatArray) -> Fl
     # Where lift stands still there are several values: a rise that is none makes it one.
     rise = 1e-9 * np.arange(n)
     rows = zip(*(array.reshape(-1, n) for array in (lift, known_lift, values)), strict=True)
-    found = [np.interp(wanted, known + rise, value) for wanted, known, value in rows]
-    return np.reshape(found, lift.shape)
+    curves = [np.interp(wanted, known + rise, value) for wanted, known, value in rows]
+    return np.reshape(curves, lift.shape)
 
 
 def _smoothed(values: FloatArray) -> FloatArray:
