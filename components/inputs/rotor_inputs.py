@@ -6,6 +6,7 @@ import dataclasses
 from typing import Any
 
 import jax.numpy as jnp
+import numpy as np
 import openmdao.api as om
 from openmdao.utils.options_dictionary import OptionsDictionary
 
@@ -35,8 +36,8 @@ class RotorConstants:
     wake : WakeTransport
         Law of the wake, and the ages of its nodes.
     grid : PolarTable or None
-        Angles and Reynolds numbers of the input `section_polars`, without values; None in inviscid
-        flow.
+        Angles and Reynolds numbers of the input `section_polars`, without values and thickness;
+        None in inviscid flow.
     stall_delay : float
         1 if rotation delays stall, 0 for polars as in two dimensions.
     """
@@ -96,6 +97,7 @@ def add_rotor_inputs(component: NodesComp) -> RotorConstants:
         of_section = polars.values.shape[3:]
         shape = (fidelity.n_spanwise, *of_section)
         component.add_input("section_polars", shape=shape, tags=STATIC)
+        component.add_input("section_thickness", np.zeros(fidelity.n_spanwise), tags=STATIC)
         add_point_inputs(component, ["sound_speed"])
         grid = PolarTable(polars.alpha, polars.log_re, jnp.zeros((0, *of_section)), polars.mach)
     wake = wake_transport(options["wake"], fidelity.wake)
@@ -125,7 +127,11 @@ def rotor_at(
     """
     sections = None
     if constants.grid is not None:
-        table = dataclasses.replace(constants.grid, values=inputs["section_polars"])
+        table = dataclasses.replace(
+            constants.grid,
+            values=inputs["section_polars"],
+            thickness=inputs["section_thickness"],
+        )
         sections = ViscousSections(table, constants.stall_delay)
     rotor = RotorGeometry(inputs["lattice_nodes"], 0.5 * inputs["diameter"][0], n_blades)
     return RotorCase(rotor, state_at(inputs, rotation_speed), sections, constants.wake)

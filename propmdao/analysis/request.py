@@ -37,6 +37,7 @@ class Asked(TypedDict, total=False):
     n_blades: int | None
     viscous: bool
     stall_delay: bool
+    measured_drag: bool
     broadband: bool
     trip: Trip
     wake: WakeLaw

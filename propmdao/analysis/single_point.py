@@ -76,8 +76,8 @@ def analyze(
     **asked
         Single values: rpm, thrust [N], speed [m/s], density [kg/m^3] and the rest of the air;
         twist_offset_deg, chord_factor, diameter, n_blades; viscous, stall_delay, n_crit,
-        trip_upper, trip_lower, broadband, trip, fidelity; observers, (n, 3) positions [m] as
-        `propmdao.arc` makes them, surroundings.
+        trip_upper, trip_lower, measured_drag, broadband, trip, fidelity; observers, (n, 3)
+        positions [m] as `propmdao.arc` makes them, surroundings.
 
     Returns
     -------
@@ -111,8 +111,9 @@ def analyze(
     if model.loads.viscous:
         transition = model.loads.transition
         if polars is None:
-            sources = polar_sources(changed, transition=transition)
-            polars = polars_for(changed, transition=transition)
+            measured_drag = model.loads.measured_drag
+            sources = polar_sources(changed, None, transition, measured_drag)
+            polars = polars_for(changed, None, transition, measured_drag)
         else:
             sources = dict.fromkeys((name for _, name in changed.airfoils), "given")
         sections = viscous_sections(polars, blade, radii.strips, float(model.loads.stall_delay))

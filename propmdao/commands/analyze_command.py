@@ -78,6 +78,7 @@ ASKED_OPTIONS = (
     "n_crit",
     "trip_upper",
     "trip_lower",
+    "measured_drag",
 )
 
 
@@ -180,11 +181,12 @@ def _analyze(options: argparse.Namespace) -> None:
                 f" {', '.join(dict.fromkeys(names))}"
             )
     with warning_lines("analyze"):
-        polars = polars_for(propeller, own, transition) if options.viscous else None
+        drag = options.measured_drag
+        polars = polars_for(propeller, own, transition, drag) if options.viscous else None
         analyses = [analyze(propeller, polars=polars, **point) for point in points]
     if polars is not None:
         files = {airfoil: ", ".join(names) for airfoil, *names in options.polar}
-        sources = polar_sources(propeller, own, transition)
+        sources = polar_sources(propeller, own, transition, drag)
         sources |= {name: files[key] for name in sources if (key := _key(name, files))}
         analyses = [dataclasses.replace(analysis, polars=sources) for analysis in analyses]
     results = [analysis.to_dict() for analysis in analyses]
@@ -204,8 +206,12 @@ def _key(airfoil: str, keys: Iterable[str]) -> str | None:
 
 def _check(options: argparse.Namespace) -> None:
     """Refuse options that do not go together, before the work."""
-    if not options.viscous and (options.polar or not options.stall_delay):
-        raise ValueError("--inviscid has no sections: --polar and --no-stall-delay do not go along")
+    of_sections = options.stall_delay and options.measured_drag and not options.polar
+    if not options.viscous and not of_sections:
+        raise ValueError(
+            "--inviscid has no sections: --polar, --no-stall-delay and --computed-drag do not go"
+            " along"
+        )
     placed = [*options.arc, *options.point, *options.circle, *options.hemisphere, *options.grid]
     for option, value in (("--wav", options.wav), ("--figures", options.figures)):
         if value is None:

@@ -78,6 +78,11 @@ class Transition:
         return Transition(**values)
 
     @property
+    def free(self) -> bool:
+        """Whether neither side is tripped."""
+        return self.trip_upper == FREE and self.trip_lower == FREE
+
+    @property
     def upside_down(self) -> Transition:
         """Transition of the section turned over: its trips change sides."""
         return Transition(self.n_crit, self.trip_lower, self.trip_upper)
@@ -121,12 +126,16 @@ class LoadModel:
     transition : Transition
         Transition of the boundary layers in the sections' polars; a trip of both sides trips the
         broadband noise, too.
+    measured_drag : bool
+        Whether the drag of the catalogue's and of NeuralFoil's polars is brought to the level that
+        wind tunnels measure at equal lift; False leaves it as computed.
     """
 
     viscous: bool = True
     stall_delay: bool = True
     wake: WakeLaw = dataclasses.field(default_factory=WakeLaw)
     transition: Transition = Transition()
+    measured_drag: bool = True
 
 
 @dataclasses.dataclass(frozen=True)

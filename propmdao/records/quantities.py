@@ -224,6 +224,12 @@ _ASKED = (
         allowed=Range(0.0, 1.0),
     ),
     Quantity(
+        "measured_drag", "", "drag of the sections at the level of wind tunnels", LOADS, True,
+        per_node=False, option="--computed-drag",
+        help="leave the drag of the catalogue's and NeuralFoil's polars as computed; by default it"
+        " is brought to the level that wind tunnels measure",
+    ),
+    Quantity(
         "broadband", "", "broadband self-noise beside the tones", "model.noise", False,
         per_node=False, option="--broadband", help="add the broadband self-noise to the tones",
     ),

@@ -84,6 +84,16 @@ def test_sections_can_be_left_out_or_stall_as_in_two_dimensions(recorder: Any) -
     assert no_delay == LoadModel(stall_delay=False) and recorder.polars[1] is not None
 
 
+def test_drag_can_be_left_as_computed(recorder: Any, capsys: pytest.CaptureFixture[str]) -> None:
+    for options in ([], ["--computed-drag"]):
+        assert main(["analyze", PROPELLER, "--rpm", "4000", "--json", *options]) == 0
+    level, computed = recorder.polars
+    assert recorder.asked[1].model.loads == LoadModel(measured_drag=False)
+    assert float((level.values - computed.values)[:, :, :, 1].max()) > 0.2
+    assert main(["analyze", PROPELLER, "--rpm", "4000", "--inviscid", "--computed-drag"]) == 2
+    assert "--inviscid has no sections" in capsys.readouterr().err
+
+
 def test_polars_of_ones_own_go_before_the_catalogue(
     recorder: Any, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -245,7 +255,9 @@ def test_keys_are_those_promised() -> None:
     )
     assert set(point["change"]) == {"twist_offset_deg", "chord_factor", "diameter", "n_blades"}
     assert set(point["model"]) == {"loads", "noise", "fidelity"}
-    assert set(point["model"]["loads"]) == {"viscous", "stall_delay", "wake", "transition"}
+    assert set(point["model"]["loads"]) == set(
+        "viscous stall_delay wake transition measured_drag".split()
+    )
     assert set(point["listening"]) == {"observers", "surroundings", "groups"}
     assert set(point["polars"]) == {"e63", "naca4412"}
     assert [observer["elevation_deg"] for observer in point["observers"]] == [-45, 0]

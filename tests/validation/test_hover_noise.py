@@ -29,18 +29,18 @@ def heard(study):
     return study.hover_tones()
 
 
-def test_levels_at_blade_passage_are_three_decibels_low(heard):
+def test_levels_at_blade_passage_are_two_and_a_half_decibels_low(heard):
     error = heard.spl_db - heard.measured_db
-    assert 2.7 < np.abs(error).mean() < 3.05
+    assert 2.4 < np.abs(error).mean() < 2.75
     assert error.mean() == pytest.approx(-np.abs(error).mean())  # everywhere too quiet
-    assert 4.15 < np.abs(error).max() < 4.5
+    assert 3.85 < np.abs(error).max() < 4.2
 
 
 def test_loads_that_fall_short_are_two_thirds_of_that(heard):
-    # Thrust 12 to 17 % and torque 20 to 25 % short; with the measured ones the rest is this.
+    # Thrust 12 to 17 % and torque 17 to 22 % short; with the measured ones the rest is this.
     short = heard.loads / heard.measured_loads - 1.0
     assert short[:, 0] == pytest.approx([-0.121, -0.139, -0.169], abs=0.01)
-    assert short[:, 1] == pytest.approx([-0.205, -0.226, -0.251], abs=0.01)
+    assert short[:, 1] == pytest.approx([-0.173, -0.191, -0.215], abs=0.01)
     error = heard.scaled_db - heard.measured_db
     assert 0.85 < np.abs(error).mean() < 1.1
     assert 2.5 < np.abs(error).max() < 2.9
@@ -49,8 +49,8 @@ def test_loads_that_fall_short_are_two_thirds_of_that(heard):
 
 def test_twist_that_gives_the_wind_tunnels_static_thrust_brings_most_of_that_back(heard):
     error = heard.calibrated_db - heard.measured_db
-    assert 1.05 < np.abs(error).mean() < 1.35
-    assert 2.6 < np.abs(error).max() < 2.9
+    assert 0.8 < np.abs(error).mean() < 1.1
+    assert 2.25 < np.abs(error).max() < 2.55
     assert np.abs(error[1]).max() < 1.1  # 4200 rpm
 
 

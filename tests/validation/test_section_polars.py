@@ -1,8 +1,9 @@
 """Section polars that ship against XFLR5 polars of E63 (n_crit 6) and Clark-Y (n_crit 7).
 
-The tables are NeuralFoil at n_crit 5, which was trained on XFOIL: this checks sections, angles,
-interpolation and network together, and shows what the other n_crit does, which is most of it: at
-their own n_crit NeuralFoil meets these polars within 0.01 in cl (Clark-Y from Re 6e4 up, E63).
+The tables, with drag as computed, are NeuralFoil at n_crit 5, which was trained on XFOIL: this
+checks sections, angles, interpolation and network together, and shows what the other n_crit does,
+which is most of it: at their own n_crit NeuralFoil meets these polars within 0.01 in cl (Clark-Y
+from Re 6e4 up, E63).
 Differences are means over -4 to 8 deg of angle of attack, where both sections are attached.
 """
 
@@ -36,7 +37,7 @@ def differences(
     """Rows of Re, mean |dcl|, mean |dcd|, mean dcd/cd, mean |dcm| of an airfoil."""
     section, r = find_airfoil(airfoil), np.array([0.5, 1.0])
     described = Propeller("x", 1.0, 2, r, 0.1 * r, r, [(0.0, airfoil)])
-    polars = polars_for(described, transition=transition)
+    polars = polars_for(described, transition=transition, measured_drag=False)
     table = section_tables(
         polars,
         jnp.tile(polars.weights[:1], (MOST, 1)),

@@ -34,7 +34,7 @@ def at_4003_rpm(j, **settings):
 
 @pytest.mark.parametrize(
     ("j", "ct_error", "cp_error"),
-    [(0.126, -0.167, -0.178), (0.264, -0.257, -0.200), (0.394, -0.434, -0.267)],
+    [(0.126, -0.168, -0.150), (0.264, -0.258, -0.180), (0.394, -0.435, -0.255)],
 )
 def test_thrust_and_power_in_the_wind_tunnel(j, ct_error, cp_error):
     dynamic = read_wind_tunnel(MEASURED).dynamic
@@ -52,7 +52,7 @@ def test_measured_thrust_lies_between_viscous_and_inviscid(j):
     assert at_4003_rpm(j)["CT"] < measured < at_4003_rpm(j, viscous=False)["CT"]
 
 
-@pytest.mark.parametrize(("j", "inviscid", "viscous"), [(0.0, 1.16, 1.38), (0.3, 1.14, 1.54)])
+@pytest.mark.parametrize(("j", "inviscid", "viscous"), [(0.0, 1.16, 1.44), (0.3, 1.14, 1.57)])
 def test_power_is_above_that_of_the_ideal_disk(j, inviscid, viscous):
     speed, disk = (
         j * 4003 / 60.0 * SLOW_FLYER.diameter,
@@ -68,7 +68,7 @@ def test_power_is_above_that_of_the_ideal_disk(j, inviscid, viscous):
 def test_thesis_design_point_on_its_sections():
     result = analyze(THESIS, rpm=4200.0, speed=8.0, observers=MICROPHONE).to_dict()
     assert 0.90 < result["thrust"] < 0.94  # the thesis' CT of 0.040 is 1.46 N
-    assert 0.00290 < result["CQ"] < 0.00306  # thesis 0.0034
+    assert 0.00305 < result["CQ"] < 0.00321  # thesis 0.0034
     thickness = result["observers"][0]["harmonics"][0]["spl_thickness_db"]
     assert thickness == pytest.approx(37.88, abs=0.25)
     inviscid = analyze(THESIS, rpm=4200.0, speed=8.0, viscous=False).to_dict()

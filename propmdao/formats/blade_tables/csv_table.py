@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import warnings
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -80,7 +81,9 @@ def _propeller(path: Path, columns: list[Column], named: dict[str, Column]) -> P
     used = {"r/R", "radius", "c/R", "c/D", "chord", used_angle, "airfoil", "blades"}
     optional = {"t/c": "thickness_over_chord", "f/c": "camber_over_chord"}
     optional |= {"sweep/R": "sweep_over_R", "rake/R": "rake_over_R"}
-    described = {key: named[q].numbers() for q, key in optional.items() if q in named}
+    described: dict[str, Any] = {
+        key: named[q].numbers() for q, key in optional.items() if q in named
+    }
     n_blades, assumed = _blades(path, named)
     airfoils: list[tuple[float, str]] = [(1.0, _AIRFOIL)]
     if "airfoil" in named:

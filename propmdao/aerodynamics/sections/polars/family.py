@@ -83,7 +83,7 @@ def section_tables(
     shape = polars.values.shape
     flat = mix.reshape(mix.shape[0], -1) @ polars.values.reshape(mix[0].size, -1)
     values = flat.reshape(-1, *shape[3:])
-    return PolarTable(polars.alpha, polars.log_re, values, polars.mach)
+    return PolarTable(polars.alpha, polars.log_re, values, polars.mach, thickness)
 
 
 def blade_tables(polars: SectionPolars, blade: Blade, span: SpanInterpolation) -> PolarTable:

@@ -25,6 +25,7 @@ from propmdao.aerodynamics.sections.polars.high_angle import (
     FloatArray,
 )
 from propmdao.aerodynamics.sections.polars.interpolation import clamped_stencil, dense
+from propmdao.aerodynamics.sections.polars.measured_drag import TUNNEL_N_CRIT, at_measured_level
 from propmdao.aerodynamics.sections.polars.neuralfoil_tables import (
     REYNOLDS,
     neuralfoil_grid,
@@ -48,6 +49,8 @@ from propmdao.records.models import Transition
 from propmdao.runtime.caches import kept_arrays
 from propmdao.runtime.terminal import print_line
 
+# Transition of the polars whose drag at equal lift is the measured one.
+_TUNNEL = Transition(TUNNEL_N_CRIT).completed()
 # Version of the files of polars that are kept, a part of their keys.
 _FORMAT = 1
 
@@ -80,6 +83,7 @@ def polars_for(
     propeller: Propeller,
     own: Mapping[str, PolarTable] | None = None,
     transition: Transition = Transition(),  # noqa: B008 - frozen
+    measured_drag: bool = True,
 ) -> SectionPolars:
     """Find the polars of a propeller's sections.
 
@@ -96,6 +100,10 @@ def polars_for(
         description says, or the defaults. The catalogue has tables at
         `propmdao.aerodynamics.sections.polars.shipped.SHIPPED`, and interpolates between them in
         n_crit; at any other transition NeuralFoil makes the tables of all shapes.
+    measured_drag : bool
+        Whether drag without trips is brought to the measured level
+        (`propmdao.aerodynamics.sections.polars.measured_drag`); else it is NeuralFoil's. The
+        user's tables are never changed.
 
     Returns
     -------
@@ -117,7 +125,7 @@ def polars_for(
         If an airfoil has no polars and NACA 4-digit ones stand in.
     """
     transition = transition.completed(propeller.transition)
-    sources = find_sources(propeller, own, transition)
+    sources = find_sources(propeller, own, transition, measured_drag)
     for name, source in sources.items():
         if source.substitute:
             warnings.warn(_substitute_message(name), PolarSubstituteWarning, stacklevel=2)
@@ -128,7 +136,7 @@ def polars_for(
     }
     weights = _shape_weights(propeller, [sources[name].shape for _, name in propeller.airfoils])
     tables = [
-        user.get(name) or _Values(np.log(REYNOLDS), _family_values(name, transition))
+        user.get(name) or _Values(np.log(REYNOLDS), _family_values(name, transition, measured_drag))
         for name in weights
     ]
     # A table without Reynolds numbers is the same at those of the others.
@@ -190,10 +198,10 @@ def _shape_weights(propeller: Propeller, shapes: list[str]) -> dict[str, FloatAr
     return weights
 
 
-def _family_values(name: str, transition: Transition) -> FloatArray:
+def _family_values(name: str, transition: Transition, measured_drag: bool) -> FloatArray:
     """Tables of a shape of the catalogue, or of any airfoil by NeuralFoil."""
     if name in SHAPES and shipped_shares(transition):
-        return _shipped_values(name, transition)
+        return _shipped_values(name, transition, measured_drag)
     if name in SHAPES:
         camber, thickness = shape(name)
     else:
@@ -202,29 +210,36 @@ def _family_values(name: str, transition: Transition) -> FloatArray:
         # Camber added to a flat section has the mean line that `Blade` gives it.
         camber = section.camber / peak if peak else shape("naca4")[0]
         thickness = section.thickness / section.max_thickness
-    return _neuralfoil_values(name, camber.tobytes(), thickness.tobytes(), transition)
+    return _neuralfoil_values(
+        name, camber.tobytes(), thickness.tobytes(), transition, measured_drag
+    )
 
 
 @functools.lru_cache(maxsize=16)
-def _shipped_values(name: str, transition: Transition) -> FloatArray:
+def _shipped_values(name: str, transition: Transition, measured_drag: bool) -> FloatArray:
     """Tables of a shape that ship, or between those that do."""
     values = np.zeros(())
     for made, share in shipped_shares(transition).items():
         polars = shipped_polars(name, made)
-        values = values + share * _values_at_all_angles(polars, polars)
+        if measured_drag and made.free:
+            polars = _at_measured_level(polars, shipped_polars(name, _TUNNEL))
+        values = values + share * shape_values(polars, polars)
     return values
 
 
 @functools.lru_cache(maxsize=8)
 def _neuralfoil_values(
-    name: str, camber: bytes, thickness: bytes, transition: Transition
+    name: str, camber: bytes, thickness: bytes, transition: Transition, measured_drag: bool
 ) -> FloatArray:
     """Tables of a shape by NeuralFoil; by its bytes, so that a changed file is a new shape."""
     upright = _kept_polars(name, camber, thickness, transition)
+    if measured_drag and transition.free:
+        tunnel = _kept_polars(name, camber, thickness, _TUNNEL)
+        upright = _at_measured_level(upright, tunnel)
     upside_down = upright
     if transition.upside_down != transition:
         upside_down = _kept_polars(name, camber, thickness, transition.upside_down)
-    return _values_at_all_angles(upright, upside_down)
+    return shape_values(upright, upside_down)
 
 
 def _kept_polars(
@@ -247,12 +262,10 @@ def _kept_polars(
     return unpacked(kept_arrays("polars", key, make), "polars")
 
 
-def _values_at_all_angles(upright: AttachedPolars, upside_down: AttachedPolars) -> FloatArray:
-    """Values of a shape from its coefficients near attached flow, whoever has made them.
-
-    What corrects the coefficients of all sections alike stands here, before they are continued.
-    """
-    return shape_values(upright, upside_down)
+def _at_measured_level(polars: AttachedPolars, tunnel: AttachedPolars) -> AttachedPolars:
+    """Polars with the drag that is measured at their lift, for boundary layers without trips."""
+    level = at_measured_level(polars.coefficients, tunnel.coefficients, REYNOLDS)
+    return dataclasses.replace(polars, coefficients=level)
 
 
 def _merged(grid: FloatArray, second: FloatArray) -> FloatArray:

@@ -85,9 +85,10 @@ def shipped_shares(transition: Transition) -> dict[Transition, float]:
     """
     if transition in SHIPPED:
         return {transition: 1.0}
-    untripped = transition.trip_upper == FREE and transition.trip_lower == FREE
     n_crit, nodes = transition.n_crit, jnp.asarray(SHIPPED_N_CRIT)
-    if n_crit is None or not (untripped and SHIPPED_N_CRIT[0] <= n_crit <= SHIPPED_N_CRIT[-1]):
+    if n_crit is None or not (
+        transition.free and SHIPPED_N_CRIT[0] <= n_crit <= SHIPPED_N_CRIT[-1]
+    ):
         return {}
     weights = dense(*clamped_stencil(nodes, jnp.array([n_crit])), nodes.size)[0]
     return {made: float(w) for made, w in zip(SHIPPED, weights, strict=False) if w != 0.0}

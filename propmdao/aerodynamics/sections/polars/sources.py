@@ -53,6 +53,7 @@ def polar_sources(
     propeller: Propeller,
     own: Mapping[str, PolarTable] | None = None,
     transition: Transition = Transition(),  # noqa: B008 - frozen
+    measured_drag: bool = True,
 ) -> dict[str, str]:
     """Tell where `polars_for` takes the polars of each airfoil from, without making them.
 
@@ -64,25 +65,30 @@ def polar_sources(
         The user's tables, by airfoil.
     transition : Transition
         Transition of the boundary layers to turbulent flow, where the propeller's does not hold.
+    measured_drag : bool
+        Whether drag without trips is brought to the measured level.
 
     Returns
     -------
     dict of str to str
-        Origin by airfoil, as the propeller names it: ``"catalogue, n_crit 5"``, ``"NeuralFoil,
-        n_crit 9"``, ``"user's table"``, or ``"catalogue, n_crit 5, a NACA 4-digit section in its
-        place"`` for an airfoil that has no polars.
+        Origin by airfoil, as the propeller names it: ``"catalogue, n_crit 5, drag at the measured
+        level"``, without measured drag ``"NeuralFoil, n_crit 9"``, ``"user's table"``, and with
+        ``", a NACA 4-digit section in its place"`` at the end for an airfoil that has no polars.
 
     Raises
     ------
     PolarError
         If `polars_for` refuses the same input.
     """
-    sources = find_sources(propeller, own, transition)
+    sources = find_sources(propeller, own, transition, measured_drag)
     return {name: source.text for name, source in sources.items()}
 
 
 def find_sources(
-    propeller: Propeller, own: Mapping[str, PolarTable] | None, transition: Transition
+    propeller: Propeller,
+    own: Mapping[str, PolarTable] | None,
+    transition: Transition,
+    measured_drag: bool,
 ) -> dict[str, PolarSource]:
     """Decide for each airfoil of a propeller where its polars come from.
 
@@ -95,6 +101,8 @@ def find_sources(
         folder and ending.
     transition : Transition
         Transition of the boundary layers to turbulent flow, where the propeller's does not hold.
+    measured_drag : bool
+        Whether drag without trips is brought to the measured level.
 
     Returns
     -------
@@ -108,10 +116,13 @@ def find_sources(
         and it is not installed.
     """
     transition = transition.completed(propeller.transition)
-    return {name: _source(name, own or {}, transition) for _, name in propeller.airfoils}
+    level = ", drag at the measured level" if measured_drag and transition.free else ""
+    return {name: _source(name, own or {}, transition, level) for _, name in propeller.airfoils}
 
 
-def _source(name: str, own: Mapping[str, PolarTable], transition: Transition) -> PolarSource:
+def _source(
+    name: str, own: Mapping[str, PolarTable], transition: Transition, level: str
+) -> PolarSource:
     """Decide for one airfoil: the user's table goes first, then the catalogue, then NeuralFoil."""
     table = _own_table(name, own)
     if table is not None:
@@ -124,7 +135,7 @@ def _source(name: str, own: Mapping[str, PolarTable], transition: Transition) ->
             f"installed: pip install 'propmdao[polars]', or take the catalogue's n_crit {low:g} to "
             f"{high:g} without trips, or {SHIPPED_TRIPPED}"
         )
-    catalogue, neuralfoil = f"catalogue, {transition}", f"NeuralFoil, {transition}"
+    catalogue, neuralfoil = (f"{by}, {transition}{level}" for by in ("catalogue", "NeuralFoil"))
     plain = _catalogue_shape(name)
     if plain is not None:
         return PolarSource(plain, catalogue if shipped else neuralfoil)

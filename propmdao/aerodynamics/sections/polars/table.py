@@ -10,7 +10,12 @@ import numpy as np
 import numpy.typing as npt
 
 from propmdao.aerodynamics.sections.polars.interpolation import clamped_stencil, periodic_stencil
-from propmdao.aerodynamics.sections.polars.mach import MACH_LIMIT, prandtl_glauert
+from propmdao.aerodynamics.sections.polars.mach import (
+    DRAG_RISE_LIMIT,
+    MACH_LIMIT,
+    drag_rise,
+    prandtl_glauert,
+)
 from propmdao.records.pytrees import record
 from propmdao.runtime.compilation import compiled
 
@@ -45,12 +50,16 @@ class PolarTable:
     mach : (n_mach,) array, optional
         Mach numbers of `values`, rising, at least two. None for polars that are the same but for
         that factor at all Mach numbers.
+    thickness : (n_sections,) array, optional
+        Maximum thickness over chord, from which shocks begin. None for sections without drag rise;
+        polars that vary with Mach number have their own.
     """
 
     alpha: jax.Array
     log_re: jax.Array
     values: jax.Array
     mach: jax.Array | None = None
+    thickness: jax.Array | None = None
 
     @property
     def cl(self) -> jax.Array:
@@ -81,11 +90,14 @@ class SectionCurves:
         `PolarTable` has them.
     mach : (n_sections,) array or number
         Mach numbers.
+    thickness : (n_sections,) array, optional
+        Maximum thickness over chord; None where there is no drag rise to add.
     """
 
     alpha: jax.Array
     values: jax.Array
     mach: jax.Array | float
+    thickness: jax.Array | None = None
 
 
 def section_curves(
@@ -112,7 +124,8 @@ def section_curves(
     row = jnp.arange(table.values.shape[0])[:, None]
     if table.mach is None:
         near = table.values[row, :, index]
-        return SectionCurves(table.alpha, jnp.einsum("nrca,nr->nca", near, weight), mach)
+        curves = jnp.einsum("nrca,nr->nca", near, weight)
+        return SectionCurves(table.alpha, curves, mach, table.thickness)
     values = jnp.einsum("nrcma,nr->ncma", table.values[row, :, :, index], weight)
     machs = jnp.broadcast_to(jnp.asarray(mach, float), re.shape)
     index, weight = clamped_stencil(table.mach, machs)
@@ -135,14 +148,18 @@ def curve_coefficients(
     Returns
     -------
     cl, cd, cm : (n,) arrays
-        Coefficients, C1 in the angle; cm about the quarter chord, nose up.
+        Coefficients, C1 in the angle; cm about the quarter chord, nose up. Drag is with that of
+        shocks, by `drag_rise`, where the curves have a thickness.
     """
     index, weight = periodic_stencil(curves.alpha, alpha)
     row = jnp.arange(curves.values.shape[0])[:, None]
     near = curves.values[row, :, index]
     cl, log_cd, cm = jnp.einsum("nac,na->cn", near, weight)
     factor = prandtl_glauert(curves.mach, alpha)
-    return factor * cl, jnp.exp(log_cd), factor * cm
+    cl, cd = factor * cl, jnp.exp(log_cd)
+    if curves.thickness is not None:
+        cd = cd + drag_rise(curves.mach, alpha, cl, curves.thickness)
+    return cl, cd, factor * cm
 
 
 @compiled
@@ -161,7 +178,7 @@ def section_coefficients(
         Reynolds number of each section on its chord; held at the ends of the table.
     mach : (n,) array or number
         Mach number of each section; it raises lift and moment by `prandtl_glauert`, from a table
-        without Mach numbers by that alone, and leaves its drag.
+        without Mach numbers by that alone, and its drag by `drag_rise`.
 
     Returns
     -------
@@ -218,7 +235,8 @@ def warn_outside(
         what = (
             "the polars are held at the end of their range there"
             if table.mach is not None and limit[worst] == float(table.mach[-1])
-            else "the polars know no shocks: their lift correction is held there, drag has none"
+            else "the polars know no shocks: their lift correction is held there, and so is the "
+            f"drag rise from Mach {DRAG_RISE_LIMIT:g} on"
         )
         warnings.warn(
             f"Mach number {machs[worst]:.3g} at r/R {radii[worst]:.3g} is above "

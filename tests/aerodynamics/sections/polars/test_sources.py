@@ -35,6 +35,9 @@ from propmdao.runtime.caches import FOLDER_VARIABLE
 Section = Callable[..., PolarTable]
 
 
+LEVEL = "drag at the measured level"
+
+
 @pytest.fixture
 def without_neuralfoil(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(sources, "neuralfoil_installed", lambda: False)
@@ -148,36 +151,38 @@ def test_sources_are_told_by_airfoil(
     own = {"clarky": section("clarky")}
     monkeypatch.setattr(sources, "neuralfoil_installed", lambda: True)
     assert polar_sources(described, own) == {
-        "e63": "catalogue, n_crit 5",
-        "naca2212": "NeuralFoil, n_crit 5",
+        "e63": f"catalogue, n_crit 5, {LEVEL}",
+        "naca2212": f"NeuralFoil, n_crit 5, {LEVEL}",
         "clarky": "user's table",
     }
     assert polar_sources(described, own, Transition(8.5)) == {
-        "e63": "catalogue, n_crit 8.5",
-        "naca2212": "NeuralFoil, n_crit 8.5",
+        "e63": f"catalogue, n_crit 8.5, {LEVEL}",
+        "naca2212": f"NeuralFoil, n_crit 8.5, {LEVEL}",
         "clarky": "user's table",
     }
     assert polar_sources(described, own, Transition(11.0)) == {
-        "e63": "NeuralFoil, n_crit 11",
-        "naca2212": "NeuralFoil, n_crit 11",
+        "e63": f"NeuralFoil, n_crit 11, {LEVEL}",
+        "naca2212": f"NeuralFoil, n_crit 11, {LEVEL}",
         "clarky": "user's table",
     }
     monkeypatch.setattr(sources, "neuralfoil_installed", lambda: False)
     with warnings.catch_warnings():
         warnings.simplefilter("error")  # `polars_for` has warned
         substitute = polar_sources(described, own)["naca2212"]
-    assert substitute == "catalogue, n_crit 5, a NACA 4-digit section in its place"
+    assert substitute == f"catalogue, n_crit 5, {LEVEL}, a NACA 4-digit section in its place"
 
 
 def test_the_transition_of_the_description_holds_where_none_is_asked_for(
     propeller: Callable[..., Propeller],
 ) -> None:
     described = dataclasses.replace(propeller((0.0, "e63")), n_crit=9.0)
-    assert polar_sources(described) == {"e63": "catalogue, n_crit 9"}
+    assert polar_sources(described) == {"e63": f"catalogue, n_crit 9, {LEVEL}"}
     plain = propeller((0.0, "e63"))
     at_nine = polars_for(plain, transition=Transition(9.0))
     np.testing.assert_array_equal(polars_for(described).values, at_nine.values)
-    assert polar_sources(described, transition=Transition(3.0)) == {"e63": "catalogue, n_crit 3"}
+    assert polar_sources(described, transition=Transition(3.0)) == {
+        "e63": f"catalogue, n_crit 3, {LEVEL}"
+    }
 
 
 @pytest.mark.usefixtures("drag_of_n_crit")
@@ -188,21 +193,21 @@ def test_made_polars_are_kept(
     tmp_path: Path,
 ) -> None:
     described = propeller((0.0, "e63"))
-    first = polars_for(described, transition=Transition(11.0))
+    first = polars_for(described, transition=Transition(11.0), measured_drag=False)
     said = capsys.readouterr().err
     assert said.count("\n") == 1
     assert said.startswith("propmdao: NeuralFoil makes the polars of airfoil 'e63' at n_crit 11, o")
     propeller_polars._neuralfoil_values.cache_clear()
     with monkeypatch.context() as patch:
         patch.setattr(propeller_polars, "neuralfoil_grid", None)  # nobody may ask it again
-        again = polars_for(described, transition=Transition(11.0))
+        again = polars_for(described, transition=Transition(11.0), measured_drag=False)
     assert capsys.readouterr().err == ""
     np.testing.assert_array_equal(first.values, again.values)
     for other in (Transition(12.0), Transition(11.0, 0.1, 0.1)):
-        polars_for(described, transition=other)
+        polars_for(described, transition=other, measured_drag=False)
     monkeypatch.setattr(propeller_polars, "neuralfoil_settings", lambda: "other flat plates")
     propeller_polars._neuralfoil_values.cache_clear()
-    polars_for(described, transition=Transition(11.0))
+    polars_for(described, transition=Transition(11.0), measured_drag=False)
     assert capsys.readouterr().err.count("\n") == 3
     assert len(list((tmp_path / "polars").iterdir())) == 4
 
