@@ -214,16 +214,16 @@ def results(analysis: Analysis) -> Values:
         Numbers with the keys of `Band.values`.
     """
     loads = analysis.loads
-    found: Values = (
+    values: Values = (
         {"thrust": float(loads.thrust)} if analysis.point.thrust is None else {"rpm": analysis.rpm}
     )
-    found["shaft_power"] = float(loads.torque) * analysis.rpm * RAD_PER_S
-    found["spl_bpf_db"] = analysis.spl_bpf_db().tolist()
-    return found
+    values["shaft_power"] = float(loads.torque) * analysis.rpm * RAD_PER_S
+    values["spl_bpf_db"] = analysis.spl_bpf_db().tolist()
+    return values
 
 
 def _inputs(
-    analysis: Analysis, size: Uncertainties, given: SectionPolars | None
+    analysis: Analysis, size: Uncertainties, own: SectionPolars | None
 ) -> Iterator[tuple[str, str, tuple[float, float], tuple[_Trial, _Trial] | str]]:
     """Name, unit and ends of every input, and its two analyses or why there are none."""
     request, propeller = analysis.request, analysis.propeller
@@ -231,8 +231,8 @@ def _inputs(
     model = dataclasses.replace(request.model, noise=NoiseModel())
     request = dataclasses.replace(request, model=model)
     change, loads = request.change, model.loads
-    polars = given
-    if loads.viscous and given is None:
+    polars = own
+    if loads.viscous and own is None:
         with _silent():  # the analysis has said it
             polars = polars_for(propeller, transition=loads.transition)
 
@@ -268,7 +268,7 @@ def _inputs(
     yield "chord", "", ends, both(widened, ends)
     inviscid = "inviscid flow has no polars"
     no_n_crit = "the polars given are at the transition they were made at"
-    why = inviscid if not loads.viscous else no_n_crit if given is not None else None
+    why = inviscid if not loads.viscous else no_n_crit if own is not None else None
     yield "n_crit", "", size.n_crit, why or both(with_transition, size.n_crit)
     ends = (1.0 - size.drag, 1.0 + size.drag)
     drag = both(dragged, ends) if loads.viscous else inviscid

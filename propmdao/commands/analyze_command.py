@@ -190,11 +190,10 @@ def _analyze(options: argparse.Namespace) -> None:
     if options.band:
         from propmdao.analysis.uncertainty import band
 
-        given = polars if own else None
         for result, analysis in zip(results, analyses, strict=True):
-            # What has not converged has no band; the result says why.
-            found = result["converged"]
-            result["band"] = band(analysis, polars=given).to_dict() if found else None
+            result["band"] = None  # what has not converged has none, and says why
+            if result["converged"]:
+                result["band"] = band(analysis, polars=polars if own else None).to_dict()
     results[0] |= _write(options, analyses[0])
     if options.json:
         print_json(results if _is_list(options.rpm) else results[0])
