@@ -131,6 +131,50 @@ def over_rpm_and_advance_ratio(
     return figure
 
 
+def measured_against_computed(
+    groups: Mapping[str, Sequence[tuple[Points, Mapping[str, Points]]]],
+) -> Figure:
+    """Computed CT and CP over measured ones, a colour for every group of propellers.
+
+    Parameters
+    ----------
+    groups : mapping of str to sequence of (Points, mapping of str to Points)
+        By the name of the group: measured points, and computed ones at the same by the name of
+        their set, of which there is a column of axes each.
+
+    Returns
+    -------
+    Figure
+        The figure; full dots are without flight speed, open ones with it, and dotted lines are
+        10 % off.
+    """
+    sets = list(dict.fromkeys(name for group in groups.values() for _, by in group for name in by))
+    figure = page(10.5)
+    grid: Any = figure.subplots(2, len(sets), sharex="row", sharey="row", squeeze=False)
+    for row, quantity in zip(grid, ("CT", "CP"), strict=True):
+        row[0].set_ylabel(f"{quantity}, computed")
+        for axes, name in zip(row, sets, strict=True):
+            axes.grid(**GRID)
+            axes.set(xlabel=f"{quantity}, measured", title=f"{quantity} {name}", aspect="equal")
+            axes.locator_params(nbins=5)
+            for color, (label, pairs) in zip(RUN_COLORS, groups.items(), strict=False):
+                for measured, computed in pairs:
+                    x, y = getattr(measured, quantity), getattr(computed[name], quantity)
+                    still = measured.J == 0.0
+                    axes.plot(x[~still], y[~still], "o", color=color, markersize=3, mfc="none")
+                    axes.plot(x[still], y[still], "o", color=color, markersize=4)
+                axes.plot([], [], "o", color=color, label=label)
+            axes.axline((0.0, 0.0), slope=1.0, color="0.3", linewidth=1.0)
+            for slope in (0.9, 1.1):
+                axes.axline((0.0, 0.0), slope=slope, color="0.3", linewidth=0.8, linestyle=":")
+    handles, labels = grid[0, 0].get_legend_handles_labels()
+    figure.legend(
+        handles, labels, loc="outside upper center", ncols=len(labels),
+        title="static (full), with flight speed (open); dotted: 10 % off",
+    )  # fmt: skip
+    return figure
+
+
 def tone_directivity(
     elevation_deg: npt.ArrayLike,
     computed: Mapping[str, npt.ArrayLike],
