@@ -8,6 +8,7 @@ neither static thrust nor power. `aerodynamic_sensitivity.py` shows what the dif
 """
 
 import argparse
+import contextlib
 import csv
 import dataclasses
 import time
@@ -18,6 +19,7 @@ from typing import Literal
 import numpy as np
 from rich.console import Console
 from rich.table import Table
+from tqdm import tqdm
 
 import propmdao as pm
 from propmdao.analysis.wind_tunnel import (
@@ -171,7 +173,7 @@ def compared(case: tuple[str, bool]) -> Comparison | str:
     name, quick = case
     whole = read_wind_tunnel(cases()[name])
     # Neighbouring points say the same; zero thrust lies between two of all of them.
-    tunnel = chosen(whole, 7, 25) if quick else chosen(whole, 2, 2)
+    tunnel = chosen(whole, 7, 25) if quick else chosen(whole, 2, 3)
     try:
         return compare(name, tunnel, zero_thrust(whole.dynamic))
     except MeasurementError as error:
@@ -278,12 +280,12 @@ def points(found: Iterable[Comparison]) -> list[dict[str, object]]:
 def catalogue(quick: bool = False, n_workers: int = 1) -> list[Comparison]:
     """Compare every propeller, on several processes if that is asked for; say which are missing."""
     tasks = [(name, quick) for name in cases()]
-    results: list[Comparison | str]
-    if n_workers == 1:
-        results = [compared(task) for task in tasks]
-    else:
-        with start_workers(n_workers) as executor:
-            results = list(results_in_order(executor, compared, tasks))
+    with contextlib.ExitStack() as stack:
+        results: Iterable[Comparison | str] = map(compared, tasks)
+        if n_workers > 1:
+            executor = stack.enter_context(start_workers(n_workers))
+            results = results_in_order(executor, compared, tasks)
+        results = list(tqdm(results, total=len(tasks), unit="propeller"))
     for result in results:
         if isinstance(result, str):
             print(result)
