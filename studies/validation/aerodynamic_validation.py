@@ -192,10 +192,10 @@ def mean_errors(difference: Errors) -> dict[str, float]:
     return means
 
 
-def summary(found: Iterable[Comparison]) -> list[dict[str, str | float]]:
+def summary(propellers: Iterable[Comparison]) -> list[dict[str, str | float]]:
     """Tabulate the errors, a row for each propeller; columns of a set begin with its name."""
     rows = []
-    for comparison in found:
+    for comparison in propellers:
         row: dict[str, str | float] = {
             "propeller": comparison.propeller,
             "J0 measured": comparison.zero_thrust[0],
@@ -212,13 +212,13 @@ def summary(found: Iterable[Comparison]) -> list[dict[str, str | float]]:
     return rows
 
 
-def verdicts(found: Sequence[Comparison]) -> list[dict[str, str | float]]:
+def verdicts(propellers: Sequence[Comparison]) -> list[dict[str, str | float]]:
     """Compare the means of the families with what is aimed at; best known descriptions alone."""
     rows: list[dict[str, str | float]] = []
     for family, name, targets in TARGETS:
         members = [
             comparison
-            for comparison in found
+            for comparison in propellers
             if comparison.best_known
             and (comparison.thickness >= THICK if family == "thick sections"
                  else comparison.family == family)
@@ -260,10 +260,10 @@ def show(rows: Sequence[Mapping[str, object]], formats: Mapping[str, str]) -> No
     Console(highlight=False).print(table)
 
 
-def points(found: Iterable[Comparison]) -> list[dict[str, object]]:
+def points(propellers: Iterable[Comparison]) -> list[dict[str, object]]:
     """Every measured point with what was computed there in both sets."""
     rows: list[dict[str, object]] = []
-    for comparison in found:
+    for comparison in propellers:
         for part in ("static", "dynamic"):
             origins = {"measured": getattr(comparison.tunnel, part)}
             origins |= {column.name: getattr(column, part) for column in comparison.columns}
@@ -304,11 +304,11 @@ def main() -> None:
     output.mkdir(parents=True, exist_ok=True)
 
     began = time.perf_counter()
-    found = catalogue(options.quick, options.workers)
-    table = summary(found)
+    propellers = catalogue(options.quick, options.workers)
+    table = summary(propellers)
     every: dict[str, object] = {name: "" for row in table for name in row}
     write_csv(output / "summary.csv", [every | row for row in table])
-    write_csv(output / "points.csv", points(found))
+    write_csv(output / "points.csv", points(propellers))
     for name, both in ((PUBLISHED, {"J0 measured": ".3f", "J0 computed": ".3f"}),
                        (TURNED, {"twist": "+.2f"})):  # fmt: skip
         print(f"\n{name}: mean errors in %; static: of each point, with flight speed: of the")
@@ -318,31 +318,22 @@ def main() -> None:
         show(table, {"propeller": "", **both,
                      **{f"{name}: {error}": form for error, form in OF_SET.items()}})  # fmt: skip
     print("\nMeans over families of n propellers, one description for each")
-    show(verdicts(found), {"family": "", "n": "d", "set": "", "error": "",
+    show(verdicts(propellers), {"family": "", "n": "d", "set": "", "error": "",
                            "target": ".1f", "mean": "+.1f", "verdict": ""})  # fmt: skip
-    write_figures(output, found)
+    write_figures(output, propellers)
     seconds = time.perf_counter() - began
     print(f"\nMean absolute errors, those beyond J 0.5, every point, the figures: {output}")
-    print(f"{len(found)} propellers in {seconds:.0f} s")
+    print(f"{len(propellers)} propellers in {seconds:.0f} s")
 
 
-def write_figures(output: Path, found: Sequence[Comparison]) -> None:
+def write_figures(output: Path, propellers: Sequence[Comparison]) -> None:
     """Draw all propellers together, and each over its advance ratio."""
-    families: dict[str, list[Comparison]] = {}
-    for comparison in found:
-        if comparison.best_known:
-            families.setdefault(comparison.family, []).append(comparison)
-    pairs = {
-        family: [
-            (measured, {column.name: getattr(column, part) for column in comparison.columns})
-            for comparison in members
-            for part in ("static", "dynamic")
-            for measured in [getattr(comparison.tunnel, part)]
-        ]
-        for family, members in families.items()
+    off = {
+        comparison.propeller: {column.name: column.errors for column in comparison.columns}
+        for comparison in propellers
     }
-    comparisons.measured_against_computed(pairs).savefig(output / "catalogue.png")
-    for comparison in found:
+    comparisons.errors_by_propeller(off).savefig(output / "catalogue.png")
+    for comparison in propellers:
         titles = [
             f"{comparison.propeller}, {c.name} ({c.twist_deg:+.2f} deg)" for c in comparison.columns
         ]
