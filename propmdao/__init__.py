@@ -1,7 +1,8 @@
 """Quieter propellers by design: vortex lattice, Formulation 1A and OpenMDAO components.
 
 ``import propmdao as pm`` gives what a script needs: a described propeller (`load_propeller`,
-`Propeller`), its analysis (`analyze`, `sweep`, `fly_over`), the records that say what is asked
+`Propeller`), its analysis (`analyze`, `sweep`, `fly_over`) with its
+`band` of what is not known for sure, the records that say what is asked
 (`OperatingPoint`, `Air`, `Change`, `Model`, `Listening` and what they hold, `Flight`) and the
 builders of observers (`arc`, `circle`, `hemisphere`, `grid`, `point`). All of them are imported
 when they are first used. OpenMDAO components are in `propmdao.components`.
@@ -30,10 +31,12 @@ _HOMES = {
     "SelfNoiseModel": "records.models",
     "Surroundings": "records.listening",
     "Transition": "records.models",
+    "Uncertainties": "analysis.uncertainty",
     "WakeGrid": "records.wake_law",
     "WakeLaw": "records.wake_law",
     "analyze": "analysis.single_point",
     "arc": "acoustics.kinematics.observers",
+    "band": "analysis.uncertainty",
     "circle": "acoustics.kinematics.observers",
     "fly_over": "analysis.flyovers",
     "grid": "acoustics.kinematics.observers",
@@ -58,11 +61,13 @@ __all__ = [
     "SelfNoiseModel",
     "Surroundings",
     "Transition",
+    "Uncertainties",
     "WakeGrid",
     "WakeLaw",
     "__version__",
     "analyze",
     "arc",
+    "band",
     "circle",
     "fly_over",
     "grid",
@@ -83,6 +88,8 @@ if TYPE_CHECKING:  # what editors and type checkers see
     from propmdao.analysis.results import Analysis as Analysis
     from propmdao.analysis.single_point import analyze as analyze
     from propmdao.analysis.sweeps import sweep as sweep
+    from propmdao.analysis.uncertainty import Uncertainties as Uncertainties
+    from propmdao.analysis.uncertainty import band as band
     from propmdao.formats.propellers import load_propeller as load_propeller
     from propmdao.propeller.changes import Change as Change
     from propmdao.propeller.description import Propeller as Propeller

@@ -96,6 +96,10 @@ class Analysis:
         """The blade that was analysed: the described one with its change."""
         return self.change.applied_to(self.propeller)
 
+    def spl_bpf_db(self) -> npt.NDArray[np.float64]:
+        """Level at the blade passage frequency at every observer [dB]."""
+        return np.asarray(_levels(self.tones)["spl_db"])[:, 0]
+
     def to_dict(self) -> dict[str, Any]:
         """Results as plain numbers, with the keys of ``propmdao analyze --json``.
 

@@ -21,6 +21,10 @@ FloatArray = npt.NDArray[np.float64]
 _COLUMNS = ("rpm", "J", "CT", "CP")
 _LOW_J = 0.5  # up to here a propeller climbs and cruises; beyond it the slow ones windmill
 _TWIST_TOLERANCE = 1.0e-3  # deg
+_J_TOLERANCE = 1.0e-4
+# A run that ends short of zero thrust by less than this share of its largest CT is continued, on
+# the line through so many of its last points.
+_SHORT, _LAST = 0.02, 4
 
 
 class MeasurementError(ValueError):
@@ -61,11 +65,15 @@ class WindTunnel:
     ----------
     source : str
         Origin of the measurements: who, where, which file.
+    propellers : tuple of str
+        Names in the catalogue of the descriptions that there are of the propeller, the one that is
+        known best first.
     static, dynamic : Points
         Measured points without and with flight speed.
     """
 
     source: str
+    propellers: tuple[str, ...]
     static: Points
     dynamic: Points
 
@@ -105,8 +113,8 @@ def read_wind_tunnel(path: str | os.PathLike[str]) -> WindTunnel:
     Parameters
     ----------
     path : path
-        TOML file: ``source``, a table ``static`` of arrays rpm, CT, CP and tables ``run`` of one
-        rpm and arrays J, CT, CP.
+        TOML file: ``source``, ``propellers``, a table ``static`` of arrays rpm, CT, CP and tables
+        ``run`` of one rpm and arrays J, CT, CP.
 
     Returns
     -------
@@ -124,7 +132,8 @@ def read_wind_tunnel(path: str | os.PathLike[str]) -> WindTunnel:
         static = _points({"J": np.zeros(len(data["static"]["rpm"])), **data["static"]})
         runs = [_points({**run, "rpm": [run["rpm"]] * len(run["J"])}) for run in data["run"]]
         dynamic = {name: np.concatenate([getattr(run, name) for run in runs]) for name in _COLUMNS}
-        return WindTunnel(data["source"], static, Points(**dynamic))
+        names = tuple(map(str, data["propellers"]))
+        return WindTunnel(data["source"], names, static, Points(**dynamic))
     except KeyError as error:
         raise MeasurementError(f"{path}: {error} is missing") from error
     except (TypeError, ValueError) as error:
@@ -208,6 +217,120 @@ def errors(tunnel: WindTunnel, static: Points, dynamic: Points) -> Errors:
 Evaluate = Callable[[Propeller, Points, float], Points]
 
 
+def zero_thrust(points: Points) -> Points:
+    """Find the advance ratios at which thrust goes through zero.
+
+    A run that ends just short of it is continued on the straight line through its last points.
+
+    Parameters
+    ----------
+    points : Points
+        Measured points with flight speed.
+
+    Returns
+    -------
+    Points
+        A point of CT 0 for each rotation speed that has one, by linear interpolation over J.
+
+    Raises
+    ------
+    MeasurementError
+        If no rotation speed has one.
+    """
+    crossings = []
+    for rpm in np.unique(points.rpm):
+        run = points[points.rpm == rpm]
+        run = run[np.argsort(run.J)]
+        last = run[-_LAST:]
+        brakes = np.flatnonzero(run.CT <= 0.0)
+        if brakes.size and brakes[0] > 0:
+            pair = run[brakes[0] - 1 : brakes[0] + 1]
+            share = pair.CT[0] / (pair.CT[0] - pair.CT[1])
+            crossings.append((rpm, *(v[0] + share * (v[1] - v[0]) for v in (pair.J, pair.CP))))
+        elif not brakes.size and last.CT[-1] < _SHORT * run.CT.max() and last.CT.size == _LAST:
+            slope, at_zero = np.polyfit(last.J, last.CT, 1)
+            j = -at_zero / slope
+            crossings.append((rpm, j, np.polyval(np.polyfit(last.J, last.CP, 1), j)))
+    if not crossings:
+        raise MeasurementError("no run goes through zero thrust")
+    rpm, j, cp = np.array(crossings).T
+    return Points(rpm, j, np.zeros_like(j), cp)
+
+
+def zero_thrust_ratio(
+    propeller: Propeller, measured: Points, evaluate: Evaluate = computed
+) -> float:
+    """Compare the advance ratio of zero thrust, computed over measured.
+
+    Parameters
+    ----------
+    propeller : Propeller
+        The described blade.
+    measured : Points
+        Measured points of zero thrust, from `zero_thrust`.
+    evaluate : callable
+        Function of propeller, points and twist offset, such as `computed`.
+
+    Returns
+    -------
+    float
+        Factor on the measured advance ratios with which the mean computed CT is zero.
+
+    Raises
+    ------
+    MeasurementError
+        If there is none.
+    """
+
+    def thrust(factor: float) -> float:
+        points = dataclasses.replace(measured, J=factor * measured.J)
+        return float(np.mean(evaluate(propeller, points, 0.0).CT))
+
+    factor = _root(thrust, (1.0, 0.95), _J_TOLERANCE)
+    if factor is None:
+        raise MeasurementError(f"no advance ratio of '{propeller.name}' gives zero thrust")
+    return factor
+
+
+def zero_thrust_twist_deg(
+    propeller: Propeller, measured: Points, evaluate: Evaluate = computed
+) -> float:
+    """Find the twist offset with which thrust is zero where it was measured to be.
+
+    It is the incidence of the blade as it flew: where there is no lift, neither the wake nor the
+    slope of the polars count, only where the blade's angle of zero lift is.
+
+    Parameters
+    ----------
+    propeller : Propeller
+        The described blade.
+    measured : Points
+        Measured points of zero thrust, from `zero_thrust`; their mean CT is brought to zero.
+    evaluate : callable
+        Function of propeller, points and twist offset, such as `computed`.
+
+    Returns
+    -------
+    float
+        Angle to add to the blade angle all over the span [deg].
+
+    Raises
+    ------
+    MeasurementError
+        If no offset is found.
+    """
+
+    def thrust(offset_deg: float) -> float:
+        return float(np.mean(evaluate(propeller, measured, offset_deg).CT))
+
+    offset = _root(thrust, (0.0, 1.0), _TWIST_TOLERANCE)
+    if offset is None:
+        raise MeasurementError(
+            f"no twist offset brings the thrust of '{propeller.name}' to zero where it was measured"
+        )
+    return offset
+
+
 def calibrated_twist_deg(
     propeller: Propeller, static: Points, evaluate: Evaluate = computed
 ) -> float:
@@ -220,8 +343,7 @@ def calibrated_twist_deg(
     static : Points
         Measured points, as a rule those without flight speed.
     evaluate : callable
-        Function of propeller, points and twist offset that computes the coefficients, such as
-        `computed`.
+        Function of propeller, points and twist offset, such as `computed`.
 
     Returns
     -------
@@ -237,11 +359,19 @@ def calibrated_twist_deg(
     def missing(offset_deg: float) -> float:
         return float(np.mean(evaluate(propeller, static, offset_deg).CT / static.CT - 1.0))
 
-    solution = root_scalar(
-        missing, method="secant", x0=0.0, x1=1.0, xtol=_TWIST_TOLERANCE, maxiter=12
-    )
-    if not solution.converged or not np.isfinite(solution.root):
+    offset = _root(missing, (0.0, 1.0), _TWIST_TOLERANCE)
+    if offset is None:
         raise MeasurementError(
             f"no twist offset brings the mean CT of '{propeller.name}' to the measured one"
         )
-    return float(solution.root)
+    return offset
+
+
+def _root(
+    function: Callable[[float], float], start: tuple[float, float], tolerance: float
+) -> float | None:
+    """Root by the secant method, None where it finds none."""
+    solution = root_scalar(
+        function, method="secant", x0=start[0], x1=start[1], xtol=tolerance, maxiter=12
+    )
+    return float(solution.root) if solution.converged and np.isfinite(solution.root) else None

@@ -54,6 +54,7 @@ examples:
   propmdao analyze apcsf_11x4.7 --rpm 4200 --speed 8
   propmdao analyze apcsf_11x4.7 --thrust 1.5 --speed 8 --arc 1.905 -45 --broadband
   propmdao analyze my_blade.toml --rpm 3000:5000:500 --arc 1.905 -45 0 45 --json
+  propmdao analyze apcsf_11x4.7 --rpm 4200 --arc 1.905 -45 --band
   propmdao analyze apcsf_11x4.7 --rpm 4200 --arc 1.905 -45 --broadband --wav hover.wav
   propmdao analyze apcsf_11x4.7 --rpm 4200 --ground 10 --grid 0:40:5 0 -10 --absorption
   propmdao analyze apcsf_11x4.7 --rpm 4200 --speed 8 --level --hemisphere 20 10 --figures results
@@ -110,6 +111,13 @@ def add_analyze(commands: argparse._SubParsersAction[Any]) -> None:
         f" {described(POLAR_READERS)}; may be repeated for other airfoils",
     )
     add_asked(command, ("broadband", "trip"))
+    command.add_argument(
+        "--band",
+        action="store_true",
+        help="what inputs that are not known for sure do to thrust or rpm, power and the tone at"
+        " blade passage: blade angle +-1 deg, chord +-3 %%, n_crit 3 to 9, section drag +-20 %%;"
+        " eight solutions more",
+    )
     command.add_argument("--json", action="store_true", help="print JSON instead of tables")
     add_observers(command)
     add_surroundings(command)
@@ -190,6 +198,13 @@ def _analyze(options: argparse.Namespace) -> None:
         sources |= {name: files[key] for name in sources if (key := _key(name, files))}
         analyses = [dataclasses.replace(analysis, polars=sources) for analysis in analyses]
     results = [analysis.to_dict() for analysis in analyses]
+    if options.band:
+        from propmdao.analysis.uncertainty import band
+
+        for result, analysis in zip(results, analyses, strict=True):
+            result["band"] = None  # what has not converged has none, and says why
+            if result["converged"]:
+                result["band"] = band(analysis, polars=polars if own else None).to_dict()
     results[0] |= _write(options, analyses[0])
     if options.json:
         print_json(results if _is_list(options.rpm) else results[0])

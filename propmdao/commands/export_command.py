@@ -119,7 +119,7 @@ def _write_case(options: argparse.Namespace, propeller: Propeller) -> None:
     if not len(listening.observers):
         raise ValueError("a PSU-WOPWOP case needs observers, as with --arc 1.905 -45")
     from propmdao.analysis.single_point import analyze
-    from propmdao.analysis.wopwop_export import write_case
+    from propmdao.analysis.wopwop.exported_case import write_case
 
     with warning_lines("export"):
         analysis = analyze(propeller, **asked_of(options), listening=listening)

@@ -15,7 +15,7 @@ from propmdao.commands.warning_lines import warning_lines
 from propmdao.runtime.output_files import replacing
 
 if TYPE_CHECKING:
-    from propmdao.analysis.foreign_case import CaseResult
+    from propmdao.analysis.wopwop.foreign_case import CaseResult
 
 DESCRIPTION = """\
 Run the cases of a PSU-WOPWOP folder and print the levels that its observers hear.
@@ -127,7 +127,7 @@ def _wopwop(options: argparse.Namespace) -> None:
     if options.out is not None:
         require_output("--out", options.out)
     # Slow to import, so only once it is wanted.
-    from propmdao.analysis.foreign_case import run_case
+    from propmdao.analysis.wopwop.foreign_case import run_case
 
     with warning_lines("wopwop"):
         results = run_case(options.folder)

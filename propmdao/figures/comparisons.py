@@ -8,12 +8,20 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import numpy.typing as npt
 
-from propmdao.analysis.wind_tunnel import Points
+from propmdao.analysis.wind_tunnel import Errors, Points
 from propmdao.figures.style import GRID, LEVEL, LINE_STYLES, RUN_COLORS, page
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
+# Errors shown of many propellers, and their axis.
+_ERRORS = {
+    "static_ct": "static CT, %",
+    "static_cp": "static CP, %",
+    "low_ct": "CT to J 0.5,\n% of static CT",
+    "low_cp": "CP to J 0.5,\n% of static CP",
+}
+_SET_COLORS = ("#E69F00", "#0072B2")
 _LEAST_THRUST = 0.005  # CT below which an efficiency is that of a brake
 
 
@@ -128,6 +136,47 @@ def over_rpm_and_advance_ratio(
     grid[-1, 0].set_xlabel("rotation speed without flight speed, rpm")
     grid[-1, 1].set_xlabel("advance ratio J")
     grid[0, 1].legend(loc="best")
+    return figure
+
+
+def errors_by_propeller(errors: Mapping[str, Mapping[str, Errors]]) -> Figure:
+    """Errors of thrust and power of many propellers, a row for each.
+
+    Parameters
+    ----------
+    errors : mapping of str to mapping of str to Errors
+        By the name of the propeller and, the same ones for each, of the set.
+
+    Returns
+    -------
+    Figure
+        The figure: dots are means over the points of a propeller, lines reach from the least to the
+        largest.
+    """
+    sets = list(next(iter(errors.values())))
+    figure = page(2.0 + 0.36 * len(errors))
+    columns: Any = figure.subplots(1, len(_ERRORS), sharey=True)
+    for axes, (name, label) in zip(columns, _ERRORS.items(), strict=True):
+        axes.grid(**GRID)
+        axes.axvline(0.0, color="0.3", linewidth=1.0)
+        axes.set_xlabel(label)
+        for row, by_set in enumerate(errors.values()):
+            for k, (color, key) in enumerate(zip(_SET_COLORS, sets, strict=False)):
+                values = 100.0 * getattr(by_set[key], name)
+                values = values[np.isfinite(values)]
+                if values.size:
+                    y = row + 0.36 * ((k + 0.5) / len(sets) - 0.5)
+                    axes.plot([values.min(), values.max()], [y, y], color=color, linewidth=1.5)
+                    axes.plot([values.mean()], [y], "o", color=color, markersize=5)
+    for color, key in zip(_SET_COLORS, sets, strict=False):
+        columns[0].plot([], [], "o-", color=color, label=key)
+    columns[0].set_yticks(range(len(errors)), list(errors))
+    columns[0].invert_yaxis()
+    handles, labels = columns[0].get_legend_handles_labels()
+    figure.legend(
+        handles, labels, loc="outside upper center", ncols=len(labels),
+        title="computed over measured: mean of the points (dots), least to largest (lines)",
+    )  # fmt: skip
     return figure
 
 

@@ -26,6 +26,8 @@ from propmdao.analysis.wind_tunnel import (
     calibrated_twist_deg,
     computed,
     errors,
+    zero_thrust,
+    zero_thrust_twist_deg,
 )
 from propmdao.figures import comparisons
 
@@ -76,16 +78,17 @@ def variants(
 
 
 def sensitivities(case: str, tunnel: WindTunnel, with_n_crit: bool) -> list[dict[str, Any]]:
-    """Mean errors of every variant in per cent; then calibrated on static CT."""
+    """Mean errors of every variant in per cent; then with its own twist of zero thrust."""
     rows, propeller = [], pm.load_propeller(case)
+    zero = zero_thrust(measurements(case).dynamic)
     for label, blade, evaluate in variants(propeller, with_n_crit):
-        twist = calibrated_twist_deg(blade, tunnel.static, evaluate)
-        published, calibrated = (
+        twist = zero_thrust_twist_deg(blade, zero, evaluate)
+        published, turned = (
             _mean(tunnel, evaluate(blade, tunnel.static, offset),
                   evaluate(blade, tunnel.dynamic, offset))
             for offset in (0.0, twist)
         )  # fmt: skip
-        then = {"then CT": calibrated["CT to J 0.5"], "then CP": calibrated["CP to J 0.5"]}
+        then = {"then CT": turned["CT to J 0.5"], "then CP": turned["CP to J 0.5"]}
         rows.append({"changed": label, **published, "twist": twist, **then})
     return rows
 
@@ -133,7 +136,7 @@ def main() -> None:
         tunnel = measurements(case, quick=True) if options.quick else chosen(measurements(case))
         rows = sensitivities(case, tunnel, with_n_crit)
         write_csv(output / f"{case}.csv", [dict.fromkeys(FORMATS, "") | row for row in rows])
-        print(f"\n{case}: mean errors in %; the same calibrated on static CT (twist in deg)")
+        print(f"\n{case}: mean errors in %; then with the twist of zero thrust [deg]")
         show(rows, FORMATS)
 
         propeller, climbing = pm.load_propeller(case), tunnel.dynamic[tunnel.dynamic.J <= 0.5]

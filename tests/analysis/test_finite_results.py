@@ -13,10 +13,11 @@ import numpy as np
 import pytest
 
 from propmdao.acoustics.kinematics.observers import arc
-from propmdao.analysis import flyovers, foreign_case, single_point
+from propmdao.analysis import flyovers, single_point
 from propmdao.analysis.flyover_results import Flight
 from propmdao.analysis.single_point import analyze
 from propmdao.analysis.sweeps import sweep
+from propmdao.analysis.wopwop import foreign_case
 from propmdao.commands.json_output import print_json
 from propmdao.formats.propellers import load_propeller
 from propmdao.records.fidelity import Fidelity

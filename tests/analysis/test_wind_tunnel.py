@@ -18,12 +18,16 @@ from propmdao.analysis.wind_tunnel import (
     computed,
     errors,
     read_wind_tunnel,
+    zero_thrust,
+    zero_thrust_ratio,
+    zero_thrust_twist_deg,
 )
 from propmdao.formats.propellers import load_propeller
 from propmdao.records.fidelity import Fidelity
 
 FILE = """
 source = "made up"
+propellers = ["a", "a_uiuc"]
 [static]
 rpm = [2000, 4000]
 CT = [0.10, 0.12]
@@ -55,7 +59,7 @@ def file(tmp_path):
 
 def test_runs_are_read_one_after_the_other(file):
     tunnel = read_wind_tunnel(file)
-    assert tunnel.source == "made up"
+    assert tunnel.source == "made up" and tunnel.propellers == ("a", "a_uiuc")
     assert_allclose(tunnel.static.rpm, [2000, 4000])
     assert_allclose(tunnel.static.J, 0.0)
     assert_allclose(tunnel.dynamic.rpm, [3000, 3000, 4000])
@@ -77,6 +81,7 @@ def test_points_are_chosen_by_slice_and_by_mask(file):
         ("CT = [0.01]", 'CT = ["much"]', "could not convert string"),
         ("rpm = 3000", "rpm = ", "Invalid value"),
         ('source = "made up"', "", "'source' is missing"),
+        ('propellers = ["a", "a_uiuc"]', "", "'propellers' is missing"),
     ],
 )
 def test_wrong_file_is_one_line_that_begins_with_the_file(file, old, new, message):
@@ -154,14 +159,72 @@ def test_calibration_that_cannot_be_is_refused():
         calibrated_twist_deg(load_propeller("apcsf_11x4.7"), static, stuck)
 
 
+def test_zero_thrust_lies_between_neighbouring_points_of_a_run():
+    through = [4000] * 3, [0.6, 0.4, 0.7], [0.01, 0.05, -0.03], [0.02, 0.03, 0.012]
+    far = [3000] * 4, [0.1, 0.2, 0.3, 0.4], [0.09, 0.08, 0.07, 0.06], [0.03] * 4
+    braking = [2000] * 2, [0.7, 0.8], [-0.01, -0.02], [0.01] * 2
+    rows = [np.concatenate(columns) for columns in zip(through, far, braking, strict=True)]
+    crossing = zero_thrust(points(*rows))
+    assert_allclose(crossing.rpm, [4000])
+    assert_allclose((crossing.J[0], crossing.CT[0], crossing.CP[0]), (0.625, 0.0, 0.018))
+    with pytest.raises(MeasurementError, match="no run goes through zero thrust"):
+        zero_thrust(points(*far))
+    with pytest.raises(MeasurementError, match="no run goes through zero thrust"):
+        zero_thrust(points(*braking))
+
+
+def test_run_that_ends_just_short_of_zero_thrust_is_continued():
+    j = np.array([0.1, 0.5, 0.52, 0.54, 0.56])
+    run = points([5000] * 5, j, [0.1, *0.05 * (0.585 - j[1:])], [0.04, *0.1 * (0.6 - j[1:])])
+    ends = zero_thrust(run)
+    assert_allclose((ends.J[0], ends.CP[0]), (0.585, 0.0015), rtol=1e-9)
+    with pytest.raises(MeasurementError, match="no run goes through zero thrust"):
+        zero_thrust(run[:4])  # 2.25 % of the largest CT are left
+
+
+def thrust_falls_with_advance(propeller, asked, twist_deg):
+    """A propeller without thrust at J 0.6 with no twist, 0.03 more for every degree."""
+    return dataclasses.replace(asked, CT=0.2 * (0.6 + 0.03 * twist_deg - asked.J))
+
+
+def test_twist_and_ratio_of_zero_thrust():
+    measured = points([4000, 6000], [0.64, 0.68], [0.0, 0.0], [0.01, 0.01])
+    twist = zero_thrust_twist_deg(None, measured, thrust_falls_with_advance)
+    assert twist == pytest.approx(2.0, abs=1e-6)
+    ratio = zero_thrust_ratio(None, measured, thrust_falls_with_advance)
+    assert ratio == pytest.approx(0.6 / 0.66, abs=1e-6)
+
+
+@pytest.mark.filterwarnings("ignore:Tolerance of .* reached:RuntimeWarning")
+def test_zero_thrust_that_cannot_be_is_refused():
+    measured = points([4000], [0.6], [0.0], [0.01])
+
+    def stuck(propeller, asked, twist_deg):
+        return dataclasses.replace(asked, CT=np.full_like(asked.rpm, 0.1))
+
+    propeller = load_propeller("apcsf_11x4.7")
+    with pytest.raises(MeasurementError, match="no twist offset brings the thrust of 'apcsf_11x4"):
+        zero_thrust_twist_deg(propeller, measured, stuck)
+    with pytest.raises(MeasurementError, match="no advance ratio of 'apcsf_11x4.7' gives zero"):
+        zero_thrust_ratio(propeller, measured, stuck)
+
+
 def test_measurements_that_ship_are_complete(checkout):
     files = sorted((checkout / "studies" / "validation" / "measurements").glob("uiuc_*.toml"))
-    assert len(files) == 3
+    assert len(files) == 17
     for path in files:
         tunnel = read_wind_tunnel(path)
         assert isinstance(tunnel, WindTunnel)
-        assert tunnel.static.rpm.size == 16
+        assert path.stem == f"uiuc_{tunnel.propellers[0]}"
+        assert tunnel.source.startswith("UIUC Propeller Data Site, volume ")
+        assert 13 <= tunnel.static.rpm.size <= 21 and (np.diff(tunnel.static.rpm) > 0.0).all()
         runs = tomllib.loads(path.read_text())["run"]
         assert tunnel.dynamic.rpm.size == sum(len(run["J"]) for run in runs)
-        assert (tunnel.static.CT > 0.09).all()
+        assert (tunnel.static.CT > 0.07).all() and (tunnel.static.CP > 0.02).all()
         assert np.isfinite([*tunnel.dynamic.CT, *tunnel.dynamic.CP]).all()
+        # Efficiency is below 1 and a run falls with J: no column is shifted.
+        assert (tunnel.dynamic.eta < 0.85).all()
+        for rpm in np.unique(tunnel.dynamic.rpm):
+            run = tunnel.dynamic[tunnel.dynamic.rpm == rpm]
+            assert np.corrcoef(run.J, run.CT)[0, 1] < -0.95
+        assert 0.5 < zero_thrust(tunnel.dynamic).J.mean() < 0.95

@@ -14,7 +14,8 @@ OPTIONS = {quantity.option: quantity for quantity in ASKED.values() if quantity.
 COMMANDS = ("analyze", "sweep", "flyover", "export")
 #: Options that are of a command, not of what is asked of an analysis.
 OTHERS = {
-    "analyze": "--polar --json --wav --seconds --full-scale --figures --figure-at --figure-dba",
+    "analyze": "--band --polar --json --wav --seconds --full-scale --figures --figure-at"
+    " --figure-dba",
     "sweep": "--points --samples --seed --workers --out",
     "flyover": "--height --sideline --microphone --duration --no-absorption --absorption --json"
     " --out --figures --wav --full-scale",

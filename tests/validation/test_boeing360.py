@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from propmdao.analysis.foreign_case import run_case
+from propmdao.analysis.wopwop.foreign_case import run_case
 from propmdao.formats.wopwop.geometry_file import read_geometry, write_geometry
 from propmdao.formats.wopwop.loading_file import read_loading, write_loading
 from propmdao.formats.wopwop.pressure_file import read_pressure

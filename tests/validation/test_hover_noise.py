@@ -47,11 +47,18 @@ def test_loads_that_fall_short_are_two_thirds_of_that(heard):
     assert np.abs(error[1]).max() < 1.0  # 4200 rpm
 
 
-def test_twist_that_gives_the_wind_tunnels_static_thrust_brings_most_of_that_back(heard):
-    error = heard.calibrated_db - heard.measured_db
-    assert 0.8 < np.abs(error).mean() < 1.1
-    assert 2.25 < np.abs(error).max() < 2.55
-    assert np.abs(error[1]).max() < 1.1  # 4200 rpm
+def test_twist_of_zero_thrust_in_flight_brings_most_of_that_back(heard):
+    error = heard.turned_db - heard.measured_db
+    assert 0.95 < np.abs(error).mean() < 1.25
+    assert 2.45 < np.abs(error).max() < 2.75
+    assert np.abs(error[1]).max() < 1.0  # 4200 rpm
+
+
+def test_band_is_about_a_decibel_and_does_not_reach_the_photographed_blade(study, heard):
+    # A degree of blade angle makes 0.8 dB, and the photographs are 2.4 degrees off.
+    for size in (-heard.below_db, heard.above_db):
+        assert (0.75 < size).all() and (size < 1.3).all()
+    assert study.within_band(heard) == 0
 
 
 def test_measured_levels_are_not_those_of_a_smooth_law(study, heard):

@@ -14,7 +14,7 @@ from propmdao.acoustics.kinematics.observers import arc
 from propmdao.acoustics.kinematics.reception import Observers
 from propmdao.acoustics.sources.moving_sources import AperiodicLoads, PeriodicLoads
 from propmdao.acoustics.sources.rotors import Rotor, equally_spaced, mirrored, rotor_histories
-from propmdao.analysis.foreign_case import run_case
+from propmdao.analysis.wopwop.foreign_case import run_case
 from propmdao.formats.propellers import load_propeller
 from propmdao.formats.wopwop.blade_files import blade_geometry, blade_loading
 from propmdao.formats.wopwop.cases import read_cases

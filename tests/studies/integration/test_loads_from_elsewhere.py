@@ -14,7 +14,7 @@ import pytest
 from propmdao.acoustics.kinematics.observers import arc
 from propmdao.acoustics.kinematics.reception import Observers
 from propmdao.acoustics.sources.rotors import rotor_histories
-from propmdao.analysis.foreign_case import run_case
+from propmdao.analysis.wopwop.foreign_case import run_case
 from propmdao.commands.wopwop_command import levels
 from propmdao.records.air import Air
 

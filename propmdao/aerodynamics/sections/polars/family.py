@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import warnings
 
 import jax
@@ -109,6 +110,26 @@ def blade_tables(polars: SectionPolars, blade: Blade, span: SpanInterpolation) -
         span.linear @ blade.camber_over_chord,
         span.linear @ blade.thickness_over_chord,
     )
+
+
+def with_drag(polars: SectionPolars, factor: float) -> SectionPolars:
+    """Multiply the drag of polars at every angle of attack.
+
+    Parameters
+    ----------
+    polars : SectionPolars
+        Polars of the shapes.
+    factor : float
+        Factor on the drag coefficient, above 0.
+
+    Returns
+    -------
+    SectionPolars
+        Polars with the same lift.
+    """
+    values = np.array(polars.values)
+    values[:, :, :, 1] += np.log(factor)
+    return dataclasses.replace(polars, values=jnp.asarray(values))
 
 
 def warn_outside_sections(polars: SectionPolars, blade: Blade, r_over_R: npt.ArrayLike) -> None:

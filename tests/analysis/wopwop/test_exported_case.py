@@ -11,11 +11,11 @@ import pytest
 from propmdao.acoustics.kinematics.observers import arc
 from propmdao.acoustics.levels.decibels import oaspl_db, spl_db
 from propmdao.acoustics.levels.weighting import oaspl_dba
-from propmdao.analysis.foreign_case import run_case
 from propmdao.analysis.request import Asked
 from propmdao.analysis.results import Analysis
 from propmdao.analysis.single_point import analyze
-from propmdao.analysis.wopwop_export import write_blade, write_case
+from propmdao.analysis.wopwop.exported_case import write_blade, write_case
+from propmdao.analysis.wopwop.foreign_case import run_case
 from propmdao.commands.wopwop_command import levels
 from propmdao.formats.propellers import load_propeller
 from propmdao.formats.wopwop.cases import read_cases

@@ -9,9 +9,9 @@ import jax.numpy as jnp
 import numpy as np
 import pytest
 
-import propmdao.analysis.foreign_case as foreign_case
+import propmdao.analysis.wopwop.foreign_case as foreign_case
 from propmdao.acoustics.sources.formulation1a import tones
-from propmdao.analysis.foreign_case import run_case
+from propmdao.analysis.wopwop.foreign_case import run_case
 from propmdao.formats.wopwop.binary import WopwopFileError
 from propmdao.formats.wopwop.namelists.groups import read_namelists, write_namelists
 from propmdao.formats.wopwop.sources import thickness_sources
