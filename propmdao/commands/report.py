@@ -138,6 +138,12 @@ def _print_propeller(console: Console, result: dict[str, Any], condition: str) -
         console.print(
             f"Twist offset {change['twist_offset_deg']:+.4g} deg: not the geometry as described."
         )
+    from propmdao.records.models import Transition  # slow to import
+
+    loads = result["model"]["loads"]
+    transition = Transition(**loads["transition"]).completed()
+    if loads["viscous"] and transition != Transition().completed():
+        console.print(f"Transition: {transition}.", highlight=False)
 
 
 def print_doubts(results: Sequence[dict[str, Any]]) -> None:

@@ -100,15 +100,12 @@ class Transition:
         return "light" if tripped else "none"
 
     def __str__(self) -> str:
-        """Describe a completed transition in some words: n_crit, and trips where there are any."""
-        text = f"n_crit {self.n_crit:g}"
-        if (self.trip_upper, self.trip_lower) != (FREE, FREE):
-            places = [
-                "free" if place == FREE else f"{place:g}"
-                for place in (self.trip_upper, self.trip_lower)
-            ]
-            text += f", trips at x/c {places[0]} (upper) and {places[1]} (lower)"
-        return text
+        """Describe it in some words, completed: n_crit, and trips where there are any."""
+        n_crit, *trips = dataclasses.astuple(self.completed())
+        if trips == [FREE, FREE]:
+            return f"n_crit {n_crit:g}"
+        upper, lower = ("free" if place == FREE else f"{place:g}" for place in trips)
+        return f"n_crit {n_crit:g}, trips at x/c {upper} (upper) and {lower} (lower)"
 
 
 @dataclasses.dataclass(frozen=True)

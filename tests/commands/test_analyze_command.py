@@ -22,7 +22,7 @@ from propmdao.commands.program import main
 from propmdao.propeller.changes import Change
 from propmdao.records.air import Air
 from propmdao.records.listening import Surroundings
-from propmdao.records.models import LoadModel, Model, NoiseModel, SelfNoiseModel
+from propmdao.records.models import LoadModel, Model, NoiseModel, SelfNoiseModel, Transition
 from propmdao.records.states import OperatingPoint
 
 PROPELLER = "apcsf_11x4.7"
@@ -86,6 +86,7 @@ def test_sections_can_be_left_out_or_stall_as_in_two_dimensions(recorder: Any) -
     assert no_delay == LoadModel(stall_delay=False) and recorder.polars[1] is not None
 
 
+<<<<<<< ours
 def test_drag_can_be_left_as_computed(recorder: Any, capsys: pytest.CaptureFixture[str]) -> None:
     for options in ([], ["--computed-drag"]):
         assert main(["analyze", PROPELLER, "--rpm", "4000", "--json", *options]) == 0
@@ -94,6 +95,22 @@ def test_drag_can_be_left_as_computed(recorder: Any, capsys: pytest.CaptureFixtu
     assert float((level.values - computed.values)[:, :, :, 1].max()) > 0.2
     assert main(["analyze", PROPELLER, "--rpm", "4000", "--inviscid", "--computed-drag"]) == 2
     assert "--inviscid has no sections" in capsys.readouterr().err
+=======
+def test_transition_is_of_the_polars_and_is_said(
+    recorder: Any, capsys: pytest.CaptureFixture[str]
+) -> None:
+    for given in ([], ["--n-crit", "9"], ["--trip-upper", "0.05", "--trip-lower", "0.05"]):
+        assert main(["analyze", PROPELLER, "--rpm", "4000", *given]) == 0
+    asked = [request.model.loads.transition for request in recorder.asked]
+    assert asked == [Transition(), Transition(9.0), Transition(None, 0.05, 0.05)]
+    drag = [np.asarray(polars.values[..., 1, :, :]).mean() for polars in recorder.polars]
+    assert drag[0] < drag[1] and drag[0] < drag[2]
+    printed = [line for line in capsys.readouterr().out.splitlines() if "Transition" in line]
+    assert printed == [
+        "Transition: n_crit 9.",
+        "Transition: n_crit 5, trips at x/c 0.05 (upper) and 0.05 (lower).",
+    ]
+>>>>>>> theirs
 
 
 def test_polars_of_ones_own_go_before_the_catalogue(

@@ -95,7 +95,7 @@ def shipped_shares(transition: Transition) -> dict[Transition, float]:
 
 
 def generate(path: Path) -> None:
-    """Make the file of tables; needs NeuralFoil and takes five to twenty minutes.
+    """Make the file of tables; needs NeuralFoil and takes four minutes of a core.
 
     Parameters
     ----------

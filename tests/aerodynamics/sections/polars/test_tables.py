@@ -17,7 +17,7 @@ from propmdao.aerodynamics.sections.polars.family import (
     warn_outside_sections,
 )
 from propmdao.aerodynamics.sections.polars.high_angle import ATTACHED_DEG, FloatArray
-from propmdao.aerodynamics.sections.polars.neuralfoil_tables import REYNOLDS, neuralfoil_polar
+from propmdao.aerodynamics.sections.polars.neuralfoil_tables import REYNOLDS, neuralfoil_polars
 from propmdao.aerodynamics.sections.polars.propeller_polars import polars_for
 from propmdao.aerodynamics.sections.polars.shipped import (
     SHAPES,
@@ -269,10 +269,11 @@ def test_neuralfoil_makes_the_same_tables_again(name: str) -> None:
     pytest.importorskip("neuralfoil", reason="the extra `polars` is not installed")
     camber, thickness = shape(name)
     alpha = np.array([-2.0, 3.0, 6.0])
-    section = 0.045 * camber, 0.09 * thickness
+    section = 0.045 * camber[None], 0.09 * thickness[None]
     columns = 26 + alpha.astype(int)
     for transition in SHIPPED:
-        cl, cd, cm, _ = neuralfoil_polar(*section, alpha, REYNOLDS[2:], transition)
+        polars = neuralfoil_polars(*section, alpha, REYNOLDS[2:], transition)
+        cl, cd, cm = (values[0] for values in polars[:3])
         stored = shipped_polars(name, transition).coefficients[3, 3]  # camber 0.045, thickness 0.09
         unit = 2.0 if transition == Transition().completed() else 5.0
         # The rounding of the file, and what other versions of numpy may add.
@@ -303,8 +304,10 @@ def test_sections_between_the_nodes_are_near_neuralfoil(
     )
     repeated = dataclasses.replace(table, values=jnp.repeat(table.values, alpha.size, axis=0))
     between = section_coefficients(repeated, jnp.radians(alpha), jnp.full(alpha.size, re))
-    exact = neuralfoil_polar(camber, thickness, alpha, np.array([re]), Transition().completed())
-    differences = [np.abs(np.asarray(between[k]) - exact[k][0]).mean() for k in range(2)]
+    exact = neuralfoil_polars(
+        camber[None], thickness[None], alpha, np.array([re]), Transition().completed()
+    )
+    differences = [np.abs(np.asarray(between[k]) - exact[k][0, 0]).mean() for k in range(2)]
     np.testing.assert_allclose(differences, BETWEEN_NODES[case], rtol=0.1)
 
 
@@ -327,8 +330,12 @@ def test_transition_between_the_tables_is_near_neuralfoil(
         jnp.full(alpha.size, section.max_thickness),
     )
     cl, cd, _ = section_coefficients(table, jnp.radians(alpha), jnp.full(alpha.size, re))
-    exact = neuralfoil_polar(
-        section.camber, section.thickness, alpha, np.array([re]), Transition(6.0).completed()
+    exact = neuralfoil_polars(
+        section.camber[None],
+        section.thickness[None],
+        alpha,
+        np.array([re]),
+        Transition(6.0).completed(),
     )
-    found = np.abs(cl - exact[0][0]).mean(), np.abs(np.log(cd / exact[1][0])).mean()
+    found = np.abs(cl - exact[0][0, 0]).mean(), np.abs(np.log(cd / exact[1][0, 0])).mean()
     np.testing.assert_allclose(found, BETWEEN_TABLES[re], rtol=0.1)
