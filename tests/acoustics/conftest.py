@@ -51,7 +51,7 @@ NO_LOADS = PointLoads(position=jnp.ones((1, 3)), force=jnp.zeros((1, 3)))
 @pytest.fixture(scope="session")
 def slow_flyer() -> Rotor:
     """APC-SF 11x4.7, coarsely panelled, with loads of a plausible size at 4200 rpm."""
-    propeller = load_propeller("apcsf_11x4.7")
+    propeller = load_propeller("apcsf_11x4.7_uiuc")
     blade = Blade.from_propeller(propeller)
     span = surface_span(propeller.r_over_R[0], 10)
     nodes = surface_nodes(blade, span_interpolation(propeller.r_over_R, span), n_contour=13)

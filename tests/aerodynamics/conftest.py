@@ -19,7 +19,7 @@ class SlowFlyer:
     density = 1.225
 
     def __init__(self) -> None:
-        propeller = load_propeller("apcsf_11x4.7")
+        propeller = load_propeller("apcsf_11x4.7_uiuc")
         self.stations = propeller.r_over_R
         self.blade = Blade.from_propeller(propeller)
 

@@ -12,7 +12,7 @@ from propmdao.records.fidelity import Fidelity
 from propmdao.records.listening import Surroundings
 from propmdao.records.quantities import LEVELS
 
-SLOW_FLYER = load_propeller("apcsf_11x4.7")
+SLOW_FLYER = load_propeller("apcsf_11x4.7_uiuc")
 COARSE = Fidelity(n_chordwise=4, n_spanwise=10, n_contour=21, n_surface_span=12, n_harmonics=3)
 
 

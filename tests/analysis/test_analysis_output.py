@@ -13,7 +13,7 @@ from propmdao.analysis.sounds import pressure_record, write_sound
 from propmdao.formats.propellers import load_propeller
 from propmdao.records.fidelity import Fidelity
 
-PROPELLER = load_propeller("apcsf_11x4.7")
+PROPELLER = load_propeller("apcsf_11x4.7_uiuc")
 COARSE = Fidelity(n_chordwise=3, n_spanwise=10, n_contour=21, n_surface_span=12, n_harmonics=4)
 ARC = arc(1.905, [-45.0, 0.0, 45.0])
 

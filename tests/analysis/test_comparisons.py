@@ -64,7 +64,7 @@ def apcsf_at_two_observers():
     from propmdao.records.fidelity import Fidelity
 
     return analyze(
-        load_propeller("apcsf_11x4.7"),
+        load_propeller("apcsf_11x4.7_uiuc"),
         rpm=4200.0,
         observers=arc(1.905, [0.0, -45.0]),
         fidelity=Fidelity(2, 4, 5, 4, 2),

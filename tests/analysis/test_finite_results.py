@@ -23,7 +23,7 @@ from propmdao.formats.propellers import load_propeller
 from propmdao.records.fidelity import Fidelity
 from propmdao.runtime.finite import NotFiniteError
 
-PROPELLER = load_propeller("apcsf_11x4.7")
+PROPELLER = load_propeller("apcsf_11x4.7_uiuc")
 COARSE = Fidelity(n_chordwise=2, n_spanwise=4, n_contour=5, n_surface_span=4, n_harmonics=2)
 ASKED: dict[str, Any] = {
     "rpm": 4200.0,

@@ -20,7 +20,7 @@ from propmdao.records.fidelity import Fidelity
 from propmdao.records.models import NoiseModel, SelfNoiseModel
 from propmdao.records.states import OperatingPoint
 
-PROPELLER = load_propeller("apcsf_11x4.7")
+PROPELLER = load_propeller("apcsf_11x4.7_uiuc")
 COARSE = Fidelity(n_chordwise=3, n_spanwise=10, n_contour=21, n_surface_span=12, n_harmonics=4)
 HEIGHT = 20.0
 

@@ -22,7 +22,7 @@ from propmdao.records.quantities import ASKED, LEVELS
 from propmdao.records.states import OperatingPoint
 from propmdao.records.wake_law import WakeGrid, WakeLaw
 
-PROPELLER = load_propeller("apcsf_11x4.7")
+PROPELLER = load_propeller("apcsf_11x4.7_uiuc")
 COARSE = Fidelity(n_chordwise=3, n_spanwise=8, n_contour=15, n_surface_span=10, n_harmonics=3)
 
 
@@ -176,7 +176,7 @@ def test_a_saved_result_says_what_was_asked_of_which_blade():
         PROPELLER, rpm=4200.0, n_blades=3, density=1.1, fidelity=COARSE, observers=arc(2.0, [0.0])
     ).to_dict()
     assert result["propeller"] == {
-        "name": "apcsf_11x4.7",
+        "name": "apcsf_11x4.7_uiuc",
         "diameter": PROPELLER.diameter,
         "n_blades": 2,  # as described
         "checksum": checksum(PROPELLER),

@@ -21,7 +21,7 @@ from propmdao.propeller.description import Propeller
 from propmdao.records.fidelity import Fidelity
 from propmdao.records.quantities import BROADBAND_LEVELS, LEVELS
 
-PROPELLER = load_propeller("apcsf_11x4.7")
+PROPELLER = load_propeller("apcsf_11x4.7_uiuc")
 COARSE = Fidelity(n_chordwise=3, n_spanwise=10, n_contour=21, n_surface_span=12, n_harmonics=4)
 OBSERVERS = arc([1.905, 3.81], -45.0)
 RADII = strip_interpolation(PROPELLER.r_over_R, COARSE.n_spanwise)

@@ -112,7 +112,7 @@ def test_errors_are_relative_in_hover_and_of_the_static_coefficient_in_flight(fi
 
 
 def test_computed_is_the_analysis_of_every_point():
-    propeller = load_propeller("apcsf_11x4.7")
+    propeller = load_propeller("apcsf_11x4.7_uiuc")
     asked = points([3000, 4000], [0.0, 0.4], [np.nan] * 2, [np.nan] * 2)
     result = computed(propeller, asked, 1.0, fidelity=COARSE)
     for i, speed in enumerate((0.0, 0.4 * 4000 / 60 * 0.2794)):
@@ -131,7 +131,7 @@ def test_point_without_convergence_is_nan(monkeypatch):
 
     monkeypatch.setattr("propmdao.analysis.wind_tunnel.analyze", never)
     asked = points([3000], [0.0], [0.1], [0.04])
-    result = computed(load_propeller("apcsf_11x4.7"), asked, fidelity=COARSE)
+    result = computed(load_propeller("apcsf_11x4.7_uiuc"), asked, fidelity=COARSE)
     assert np.isnan([result.CT, result.CP]).all()
 
 
@@ -155,8 +155,8 @@ def test_calibration_that_cannot_be_is_refused():
     def stuck(propeller, points, twist_deg):
         return dataclasses.replace(points, CT=np.full_like(points.rpm, 0.1))
 
-    with pytest.raises(MeasurementError, match="no twist offset .* 'apcsf_11x4.7'"):
-        calibrated_twist_deg(load_propeller("apcsf_11x4.7"), static, stuck)
+    with pytest.raises(MeasurementError, match="no twist offset .* 'apcsf_11x4.7_uiuc'"):
+        calibrated_twist_deg(load_propeller("apcsf_11x4.7_uiuc"), static, stuck)
 
 
 def test_zero_thrust_lies_between_neighbouring_points_of_a_run():

@@ -86,7 +86,6 @@ def test_sections_can_be_left_out_or_stall_as_in_two_dimensions(recorder: Any) -
     assert no_delay == LoadModel(stall_delay=False) and recorder.polars[1] is not None
 
 
-<<<<<<< ours
 def test_drag_can_be_left_as_computed(recorder: Any, capsys: pytest.CaptureFixture[str]) -> None:
     for options in ([], ["--computed-drag"]):
         assert main(["analyze", PROPELLER, "--rpm", "4000", "--json", *options]) == 0
@@ -95,7 +94,8 @@ def test_drag_can_be_left_as_computed(recorder: Any, capsys: pytest.CaptureFixtu
     assert float((level.values - computed.values)[:, :, :, 1].max()) > 0.2
     assert main(["analyze", PROPELLER, "--rpm", "4000", "--inviscid", "--computed-drag"]) == 2
     assert "--inviscid has no sections" in capsys.readouterr().err
-=======
+
+
 def test_transition_is_of_the_polars_and_is_said(
     recorder: Any, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -110,7 +110,6 @@ def test_transition_is_of_the_polars_and_is_said(
         "Transition: n_crit 9.",
         "Transition: n_crit 5, trips at x/c 0.05 (upper) and 0.05 (lower).",
     ]
->>>>>>> theirs
 
 
 def test_polars_of_ones_own_go_before_the_catalogue(

@@ -96,7 +96,7 @@ def small():
 
 @pytest.fixture(scope="session")
 def propeller():
-    return load_propeller("apcsf_11x4.7")
+    return load_propeller("apcsf_11x4.7_uiuc")
 
 
 @pytest.fixture(scope="session")

@@ -15,7 +15,7 @@ def propeller_at(small):
         prob = om.Problem(
             driver=om.ScipyOptimizeDriver(optimizer="SLSQP", disp=False), reports=False
         )
-        group = PropellerGroup(propeller="apce_10x7", trim="rpm", fidelity=small)
+        group = PropellerGroup(propeller="apce_10x7_uiuc", trim="rpm", fidelity=small)
         prob.model.add_subsystem("propeller", group, promotes=["*"])
         prob.model.add_design_var("rpm", lower=2000.0, upper=7000.0, ref=1000.0)
         prob.model.add_objective("efficiency", scaler=-1.0)

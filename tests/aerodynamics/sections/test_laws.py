@@ -31,7 +31,7 @@ def laws(name, delay):
     return section_laws(strips, OMEGA * strips.radius, 8.0, air, sections)
 
 
-@pytest.fixture(scope="module", params=["apcsf_11x4.7", "apce_10x7"])
+@pytest.fixture(scope="module", params=["apcsf_11x4.7_uiuc", "apce_10x7_uiuc"])
 def both(request):
     """Laws in two dimensions, and on the rotating blade."""
     return laws(request.param, 0.0), laws(request.param, 1.0)

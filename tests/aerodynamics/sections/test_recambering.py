@@ -59,12 +59,12 @@ class Rotor:
 
 @pytest.fixture(scope="module")
 def slow_flyer():
-    return Rotor("apcsf_11x4.7")
+    return Rotor("apcsf_11x4.7_uiuc")
 
 
 @pytest.fixture(scope="module")
 def thin_electric():
-    return Rotor("apce_10x7")
+    return Rotor("apce_10x7_uiuc")
 
 
 def thin_airfoils(rotor, drag=1e-12):
@@ -114,7 +114,7 @@ def test_it_settles_from_hover_to_the_windmill(
 
 @pytest.mark.parametrize("offset", [-12.0, 15.0, 30.0])
 def test_it_settles_with_all_of_the_blade_stalled(offset):
-    rotor = Rotor("apcsf_11x4.7", offset)
+    rotor = Rotor("apcsf_11x4.7_uiuc", offset)
     for speed in (0.0, 6.0):
         solution = rotor.solve(4000.0, speed)
         assert solution.converged, failure(solution)

@@ -75,4 +75,4 @@ def answer() -> type[Answer]:
 
 @pytest.fixture
 def propeller() -> Propeller:
-    return load_propeller("apcsf_11x4.7")
+    return load_propeller("apcsf_11x4.7_uiuc")

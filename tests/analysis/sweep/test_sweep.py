@@ -27,7 +27,7 @@ from propmdao.records.states import OperatingPoint
 from propmdao.records.wake_law import WakeLaw
 from propmdao.runtime.locks import InUseError, locked
 
-PROPELLER = "apcsf_11x4.7"
+PROPELLER = "apcsf_11x4.7_uiuc"
 
 
 def rows_of(path: Path) -> list[dict[str, str]]:

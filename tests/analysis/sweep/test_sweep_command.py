@@ -14,7 +14,7 @@ from propmdao.analysis.sweeps import latin_hypercube
 from propmdao.commands.program import main
 from propmdao.propeller.changes import Change
 
-PROPELLER = "apcsf_11x4.7"
+PROPELLER = "apcsf_11x4.7_uiuc"
 
 
 def command(*arguments: str) -> int:

@@ -29,7 +29,7 @@ from propmdao.records.listening import Listening
 from propmdao.records.panels import Panels
 
 COARSE = Fidelity(n_chordwise=4, n_spanwise=8, n_contour=15, n_surface_span=12, n_harmonics=4)
-PROPELLER = load_propeller("apcsf_11x4.7")
+PROPELLER = load_propeller("apcsf_11x4.7_uiuc")
 
 
 @pytest.fixture(scope="module")
