@@ -12,7 +12,15 @@ from propmdao.propeller.changes import Change
 from propmdao.records.air import Air
 from propmdao.records.fidelity import Fidelity
 from propmdao.records.listening import Listening, Surroundings
-from propmdao.records.models import LoadModel, Model, NoiseModel, SelfNoiseModel, Transition, Trip
+from propmdao.records.models import (
+    ElasticModel,
+    LoadModel,
+    Model,
+    NoiseModel,
+    SelfNoiseModel,
+    Transition,
+    Trip,
+)
 from propmdao.records.plain import from_plain, to_plain
 from propmdao.records.quantities import ASKED
 from propmdao.records.states import OperatingPoint
@@ -37,6 +45,10 @@ class Asked(TypedDict, total=False):
     n_blades: int | None
     viscous: bool
     stall_delay: bool
+    elastic: bool
+    youngs_modulus: float | None
+    shear_modulus: float | None
+    material_density: float | None
     broadband: bool
     trip: Trip
     wake: WakeLaw
@@ -153,9 +165,15 @@ def _model(places: Mapping[str, dict[str, Any]]) -> Model:
     trip = self_noise.get("trip", "none")
     if trip != "none" and not broadband:
         raise ValueError(f"trip {trip!r} is about broadband noise: ask for broadband noise, too")
-    transition = Transition(**places.get("model.loads.transition", {}))
+    loads = dict(places.get("model.loads", {}))
+    elastic, material = loads.pop("elastic", False), places.get("model.loads.elastic", {})
+    given = [name for name, value in material.items() if value is not None]
+    if given and not elastic:
+        raise ValueError(f"{given[0]} is about an elastic blade: ask for elastic, too")
+    loads["elastic"] = ElasticModel(**material) if elastic else None
+    loads["transition"] = Transition(**places.get("model.loads.transition", {}))
     return Model(
-        loads=LoadModel(**places.get("model.loads", {}), transition=transition),
+        loads=LoadModel(**loads),
         noise=NoiseModel(SelfNoiseModel(**self_noise) if broadband else None),
         **places.get("model", {}),
     )

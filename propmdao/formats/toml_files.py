@@ -14,7 +14,7 @@ from typing import Any
 import tomli_w
 
 from propmdao.propeller.checks import PropellerError
-from propmdao.propeller.description import DISTRIBUTIONS, Propeller
+from propmdao.propeller.description import DISTRIBUTIONS, MATERIAL, Propeller
 from propmdao.runtime.input_files import read_text
 from propmdao.runtime.output_files import replacing
 
@@ -70,6 +70,8 @@ def write_toml(path: str | os.PathLike[str], propeller: Propeller) -> int:
     folder = Path(path).absolute().parent
     lines = [tomli_w.dumps({"name": propeller.name, "diameter": propeller.diameter}).rstrip()]
     lines.append(f"n_blades = {propeller.n_blades}")
+    known = [key for key in MATERIAL if getattr(propeller, key) is not None]
+    lines += [f"{key} = {float(getattr(propeller, key))!r}" for key in known]
     for key in DISTRIBUTIONS:
         values = getattr(propeller, key)
         if values is None or (key in ("sweep_over_R", "rake_over_R") and not values.any()):

@@ -27,6 +27,9 @@ DISTRIBUTIONS = (
     "rake_over_R",
 )
 
+#: Material of a propeller, none of which need be known.
+MATERIAL = ("youngs_modulus", "shear_modulus", "material_density")
+
 
 @dataclasses.dataclass(frozen=True, eq=False)
 class Propeller:
@@ -60,6 +63,10 @@ class Propeller:
         default.
     source : str
         Origin of the numbers.
+    youngs_modulus, shear_modulus : float, optional
+        Stiffness of the blade's material in tension and in shear [Pa], for elastic blades.
+    material_density : float, optional
+        Density of the blade's material [kg/m^3].
 
     Raises
     ------
@@ -78,6 +85,9 @@ class Propeller:
     sweep_over_R: FloatArray = dataclasses.field(default_factory=lambda: np.zeros(()))
     rake_over_R: FloatArray = dataclasses.field(default_factory=lambda: np.zeros(()))
     source: str = ""
+    youngs_modulus: float | None = None
+    shear_modulus: float | None = None
+    material_density: float | None = None
 
     def __post_init__(self) -> None:
         for key in ("name", "source"):
@@ -89,6 +99,9 @@ class Propeller:
         if not isinstance(self.n_blades, int | np.integer) or isinstance(self.n_blades, bool):
             raise PropellerError(f"n_blades must be a whole number; it is {self.n_blades!r}")
         require_asked("n_blades", self.n_blades, PropellerError)
+        for key in MATERIAL:
+            if (value := getattr(self, key)) is not None:
+                require_asked(key, value, PropellerError)
 
         r = checks.stations(self.r_over_R)
         object.__setattr__(self, "r_over_R", r)

@@ -6,7 +6,7 @@ import dataclasses
 from typing import Literal, get_args
 
 from propmdao.records.fidelity import Fidelity
-from propmdao.records.quantities import Range
+from propmdao.records.quantities import Range, require_asked
 from propmdao.records.wake_law import WakeLaw
 
 #: How boundary layers are tripped, as NASA RP-1218 distinguishes them.
@@ -42,6 +42,34 @@ class Transition:
 
 
 @dataclasses.dataclass(frozen=True)
+class ElasticModel:
+    """Material of a blade that gives under its loads, where it is not that of the propeller's file.
+
+    Attributes
+    ----------
+    youngs_modulus, shear_modulus : float or None
+        Stiffness in tension and in shear [Pa]; None: the propeller's.
+    material_density : float or None
+        Mass per volume [kg/m^3]; None: the propeller's.
+
+    Raises
+    ------
+    ValueError
+        If a value is out of range.
+    """
+
+    youngs_modulus: float | None = None
+    shear_modulus: float | None = None
+    material_density: float | None = None
+
+    def __post_init__(self) -> None:
+        """Refuse what no material has."""
+        for field in dataclasses.fields(self):
+            if (value := getattr(self, field.name)) is not None:
+                require_asked(field.name, value)
+
+
+@dataclasses.dataclass(frozen=True)
 class LoadModel:
     """How the loads are computed.
 
@@ -55,12 +83,27 @@ class LoadModel:
         Law by which the prescribed wake moves.
     transition : Transition
         Transition of the boundary layers in the sections' polars.
+    elastic : ElasticModel or None
+        Blade that twists and bends under its loads; None (default) is a rigid one.
+
+    Raises
+    ------
+    ValueError
+        If an elastic blade is to be loaded by inviscid flow.
     """
 
     viscous: bool = True
     stall_delay: bool = True
     wake: WakeLaw = dataclasses.field(default_factory=WakeLaw)
     transition: Transition = Transition()
+    elastic: ElasticModel | None = None
+
+    def __post_init__(self) -> None:
+        """Refuse an elastic blade without the moments of its sections."""
+        if self.elastic is not None and not self.viscous:
+            raise ValueError(
+                "an elastic blade needs the moments of its sections, which inviscid flow has not"
+            )
 
 
 @dataclasses.dataclass(frozen=True)

@@ -1,0 +1,244 @@
+"""A blade that gives under its loads: loads and deflection that belong together.
+
+The air loads bend and twist the blade, and the blade changes the air loads. Both are computed in turn
+until the blade rests, which takes four or five rounds: a degree of twist changes the loads by some
+per cent, and these the twist by as little.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Callable
+from typing import NamedTuple
+
+import jax.numpy as jnp
+import numpy as np
+import numpy.typing as npt
+from jax import Array
+
+from propmdao.aerodynamics.sections.laws import ViscousSections
+from propmdao.aerodynamics.sections.polars.table import curve_coefficients, section_curves
+from propmdao.aerodynamics.solutions.case import RotorCase
+from propmdao.aerodynamics.solutions.result import RotorLoads
+from propmdao.geometry.blade import Blade
+from propmdao.geometry.lattice import strip_interpolation, strip_radii
+from propmdao.propeller.checks import PropellerError
+from propmdao.propeller.description import MATERIAL, Propeller
+from propmdao.records.models import ElasticModel
+from propmdao.records.panels import Panels
+from propmdao.records.quantities import ASKED
+from propmdao.records.states import RotorState
+from propmdao.runtime.compilation import compiled
+from propmdao.structures.beam import Beam, Material, SectionForces, motion, turned
+from propmdao.structures.equilibrium import equilibrium
+from propmdao.structures.sections import beam_of, beam_radii, elastic_axis
+from propmdao.structures.shapes import Shapes, shapes
+
+FloatArray = npt.NDArray[np.float64]
+
+#: Young's over shear modulus where the latter is not given: Poisson's ratio 0.35, as of plastics.
+YOUNG_OVER_SHEAR = 2.7
+_TOLERANCE = 1.0e-4  # of the twist between two rounds [deg]
+_MOST_ROUNDS = 40
+_MOST_TWIST = 45.0  # beyond which the sections' flow and the beam mean nothing any more [deg]
+
+
+class ElasticError(ValueError):
+    """The blade does not come to rest under its loads, or its material is not known."""
+
+
+@dataclasses.dataclass(frozen=True)
+class Deflection:
+    """How far a blade has given, at the stations of its propeller.
+
+    Attributes
+    ----------
+    r_over_R : (n_stations,) array
+        Stations.
+    twist_deg : (n_stations,) array
+        Turn of the sections, nose up [deg].
+    sweep_over_R, rake_over_R : (n_stations,) arrays
+        Displacement of the quarter chord aft and toward thrust, over the tip radius.
+    """
+
+    r_over_R: FloatArray
+    twist_deg: FloatArray
+    sweep_over_R: FloatArray
+    rake_over_R: FloatArray
+
+    def applied_to(self, propeller: Propeller) -> Propeller:
+        """Deflect a propeller of these stations."""
+        return dataclasses.replace(
+            propeller,
+            beta_deg=propeller.beta_deg + self.twist_deg,
+            sweep_over_R=propeller.sweep_over_R + self.sweep_over_R,
+            rake_over_R=propeller.rake_over_R + self.rake_over_R,
+        )
+
+
+class Solved(NamedTuple):
+    """Loads of a propeller that is held in a shape.
+
+    Attributes
+    ----------
+    blade : Blade
+        Its blade.
+    panels : Panels
+        Closed surface of the blade.
+    case : RotorCase
+        Case that was solved.
+    loads : RotorLoads
+        Its loads.
+    state : RotorState
+        How the rotor turns and flies, which a thrust required decides.
+    """
+
+    blade: Blade
+    panels: Panels
+    case: RotorCase
+    loads: RotorLoads
+    state: RotorState
+
+
+def material_of(propeller: Propeller, model: ElasticModel) -> Material:
+    """Find what a propeller is made of.
+
+    Parameters
+    ----------
+    propeller : Propeller
+        The described blade, which may name its material.
+    model : ElasticModel
+        What is known better.
+
+    Returns
+    -------
+    Material
+        The material; the shear modulus, where neither has it, is Young's over `YOUNG_OVER_SHEAR`.
+
+    Raises
+    ------
+    ElasticError
+        If Young's modulus or the density is not known.
+    """
+    known = {}
+    for name in MATERIAL:
+        asked = getattr(model, name)
+        known[name] = getattr(propeller, name) if asked is None else asked
+        if known[name] is None and name != "shear_modulus":
+            raise ElasticError(
+                f"{propeller.name} has no {name} [{ASKED[name].unit}], which an elastic blade needs:"
+                f" give it in the propeller file or by {ASKED[name].option}"
+            )
+    young, shear = known["youngs_modulus"], known["shear_modulus"]
+    return Material(
+        youngs_modulus=young,
+        shear_modulus=young / YOUNG_OVER_SHEAR if shear is None else shear,
+        density=known["material_density"],
+    )
+
+
+def deflected(
+    propeller: Propeller, material: Material, solve: Callable[[Propeller], Solved]
+) -> tuple[Deflection, Solved]:
+    """Let a blade give until its loads and its shape belong together.
+
+    Parameters
+    ----------
+    propeller : Propeller
+        Blade without loads.
+    material : Material
+        What it is made of.
+    solve : callable
+        Function that returns the loads of a propeller that is held in its shape.
+
+    Returns
+    -------
+    deflection, solved : Deflection, Solved
+        How far the blade gives, and the loads of the blade that has given so far.
+
+    Raises
+    ------
+    ElasticError
+        If the blade does not come to rest.
+    """
+    n_stations = propeller.r_over_R.size
+    deflection = Deflection(propeller.r_over_R, *np.zeros((3, n_stations)))
+    solved = solve(propeller)
+    hold = _Hold(propeller, material, solved.loads.strip_thrust.size)
+    change = np.inf
+    for _ in range(_MOST_ROUNDS):
+        following = hold.deflection(solved)
+        change = np.abs(following.twist_deg - deflection.twist_deg).max()
+        if change < _TOLERANCE:
+            return deflection, solved
+        deflection = following
+        try:
+            given = deflection.applied_to(propeller)
+        except PropellerError as error:
+            raise ElasticError(f"the blade does not stand its loads: {error}") from error
+        solved = solve(given)
+    raise ElasticError(
+        f"the blade does not come to rest under its loads: after {_MOST_ROUNDS} rounds its twist"
+        f" still changes by {change:.2g} deg"
+    )
+
+
+class _Hold:
+    """Beam of a blade, and where it is loaded and looked at."""
+
+    def __init__(self, propeller: Propeller, material: Material, n_strips: int) -> None:
+        stations = propeller.r_over_R
+        blade, radii = Blade.from_propeller(propeller), beam_radii(stations)
+        root = stations[0]
+        self.r_over_R, self.radius = stations, float(blade.radius)
+        self.beam = beam_of(blade, radii, material)
+        strips = strip_interpolation(stations, n_strips)
+        # From the elastic axis to the quarter chord.
+        self.arms = [-blade.radius * elastic_axis(blade, at) for at in (strips, radii.stations)]
+        self.places = [
+            shapes((r - root) / (1.0 - root)) for r in (strip_radii(root, n_strips), stations)
+        ]
+
+    def deflection(self, solved: Solved) -> Deflection:
+        """How far the blade gives under loads."""
+        sections = solved.case.sections
+        assert sections is not None  # `LoadModel` has refused inviscid flow
+        loads = _air_loads(solved.loads, sections, solved.state, self.arms[0])
+        moved, turn, stable = _given(
+            self.beam, solved.state.rotation_speed, loads, self.places, self.arms[1]
+        )
+        twist_deg = np.degrees(np.asarray(turn))
+        worst = int(np.argmax(np.abs(twist_deg)))
+        if not stable or not abs(twist_deg[worst]) <= _MOST_TWIST:
+            rest = "finds no rest" if not stable else f"twists by {twist_deg[worst]:.3g} deg"
+            raise ElasticError(
+                f"the blade does not stand its loads: it {rest} at"
+                f" r/R {self.r_over_R[worst]:.2f}; is it stiff enough?"
+            )
+        y, z = np.asarray(moved).T / self.radius
+        return Deflection(self.r_over_R, twist_deg, -y, z)
+
+
+@compiled
+def _air_loads(
+    loads: RotorLoads, sections: ViscousSections, state: RotorState, arm: Array
+) -> SectionForces:
+    """Forces of the air on the strips, at their quarter chord, and moments of the sections."""
+    strips, flow, air = loads.strips, loads.sections, state.air
+    reynolds = air.density * flow.relative_speed * strips.chord / air.dynamic_viscosity
+    mach = flow.relative_speed / air.sound_speed
+    curves = section_curves(sections.polars, reynolds, mach)
+    cm = curve_coefficients(curves, flow.angle_of_attack)[2]
+    pressure = 0.5 * air.density * flow.relative_speed**2
+    force = jnp.stack([-loads.strip_torque / strips.radius, loads.strip_thrust], axis=-1)
+    return SectionForces(arm, force, pressure * strips.chord**2 * strips.width * cm)
+
+
+@compiled
+def _given(
+    beam: Beam, rotation_speed: Array, loads: SectionForces, places: list[Shapes], arm: Array
+) -> tuple[Array, Array, Array]:
+    """Displacement of the quarter chord and turn at the stations, and whether the blade rests."""
+    found = equilibrium(beam, rotation_speed, places[0], loads)
+    axis, turn = motion(beam, places[1], found.amplitudes)
+    return axis + turned(arm, turn) - arm, turn, found.stable
