@@ -56,6 +56,7 @@ examples:
   propmdao analyze apcsf_11x4.7 --rpm 4200 --arc 1.905 -45 --broadband --wav hover.wav
   propmdao analyze apcsf_11x4.7 --rpm 4200 --ground 10 --grid 0:40:5 0 -10 --absorption
   propmdao analyze apcsf_11x4.7 --rpm 4200 --speed 8 --level --hemisphere 20 10 --figures results
+  propmdao analyze my_blade.toml --rpm 6000 --elastic --youngs-modulus 11e9 --material-density 1700
   propmdao analyze my_blade.toml --rpm 4200 --polar sg6042 sg6042_re50k.txt sg6042_re100k.txt
 
 CT = T/(rho n^2 D^4), CQ = Q/(rho n^2 D^5), CP = 2 pi CQ, J = V/(n D), eta = J CT/CP, n in rev/s.
@@ -72,6 +73,10 @@ ASKED_OPTIONS = (
     "twist_offset_deg",
     "viscous",
     "stall_delay",
+    "elastic",
+    "youngs_modulus",
+    "shear_modulus",
+    "material_density",
 )
 
 

@@ -183,29 +183,6 @@ def potential(beam: Beam, rotation_speed: Scalar, q: Array) -> Array:
     return beam.length * (jnp.asarray(_WEIGHTS) @ (stretched + twisted - centrifugal))
 
 
-def kinetic_energy(beam: Beam, rate: Array) -> Array:
-    """Compute the kinetic energy of a small motion, for natural frequencies.
-
-    Parameters
-    ----------
-    beam : Beam
-        The blade.
-    rate : (4, N_SHAPES) array
-        Rates of the amplitudes of u [m/s], psi_y, psi_z and phi [rad/s].
-
-    Returns
-    -------
-    scalar
-        Kinetic energy, without that of the rotation of the rotor [J].
-    """
-    d, phi = motion(beam, _BASIS, rate)
-    u, psi = _BASIS.value @ rate[0], _BASIS.value @ rate[1:3].T
-    along = u[:, None] - (beam.fibres * psi[:, None]).sum(-1)
-    across = d[:, None] + phi[:, None, None] * quarter_turn(beam.fibres)
-    square = (beam.areas * (along**2 + (across**2).sum(-1))).sum(-1)
-    return 0.5 * beam.material.density * beam.length * (jnp.asarray(_WEIGHTS) @ square)
-
-
 def work(beam: Beam, basis: Shapes, loads: SectionForces, q: Array) -> Array:
     """Compute the work that loads of fixed directions have done at a deflection.
 
