@@ -20,10 +20,13 @@ The centrifugal force is in it through the distance of each fibre from the axis 
 that stiffens, the propeller moment that turns a blade flat, the trapeze effect and the moments of
 sweep and rake all follow; none is modelled by itself.
 
-Ritz's method: u, psi and phi are `shapes`, d follows by integration.
+Ritz's method: the mean of eps over the section, psi and phi are `shapes` or their derivatives; u and d
+follow by integration.
 """
 
 from __future__ import annotations
+
+from typing import NamedTuple
 
 import jax.numpy as jnp
 from jax import Array
@@ -124,7 +127,7 @@ def motion(beam: Beam, basis: Shapes, q: Array) -> tuple[Array, Array]:
     basis : Shapes
         Polynomials at the n sections.
     q : (4, N_SHAPES) array
-        Amplitudes of u [m], psi_y, psi_z and phi [rad].
+        Amplitudes of the stretch [m], psi_y, psi_z and phi [rad].
 
     Returns
     -------
@@ -138,26 +141,42 @@ def motion(beam: Beam, basis: Shapes, q: Array) -> tuple[Array, Array]:
     return beam.length * (basis.integral @ slope), basis.value @ q[3]
 
 
-def potential(beam: Beam, rotation_speed: Scalar, q: Array) -> Array:
-    """Compute the potential of a blade that turns, without that of the loads.
+class Deformed(NamedTuple):
+    """A blade at the radii of Gauss, deformed.
+
+    Attributes
+    ----------
+    strain : (N_RADII, n_fibres) array
+        Strain of the fibres.
+    twist : (N_RADII,) array
+        Twist per length of the elastic axis [rad/m].
+    displacement : (N_RADII, n_fibres, 3) array
+        Displacement of the fibres, (x, y, z) [m].
+    """
+
+    strain: Array
+    twist: Array
+    displacement: Array
+
+
+def deformed(beam: Beam, q: Array) -> Deformed:
+    """Deform a blade.
 
     Parameters
     ----------
     beam : Beam
         The blade.
-    rotation_speed : scalar
-        Rotation speed [rad/s].
     q : (4, N_SHAPES) array
-        Amplitudes of u [m], psi_y, psi_z and phi [rad].
+        Amplitudes of the stretch [m], psi_y, psi_z and phi [rad].
 
     Returns
     -------
-    scalar
-        Energy of the strain less the work of the centrifugal force, 0 undeformed [J].
+    Deformed
+        Strains and displacements of its fibres.
     """
-    material, slope, a = beam.material, beam.axis_slope, beam.fibres
-    du, dphi = _BASIS.slope @ q[0] / beam.length, _BASIS.slope @ q[3] / beam.length
-    u, phi = _BASIS.value @ q[0], _BASIS.value @ q[3]
+    slope, a = beam.axis_slope, beam.fibres
+    mean_strain, dphi = _BASIS.slope @ q[0] / beam.length, _BASIS.slope @ q[3] / beam.length
+    phi = _BASIS.value @ q[3]
     psi, dpsi = _BASIS.value @ q[1:3].T, _BASIS.slope @ q[1:3].T / beam.length
     dd = psi + phi[:, None] * quarter_turn(slope)
     d = beam.length * (_BASIS.integral @ dd)
@@ -169,15 +188,42 @@ def potential(beam: Beam, rotation_speed: Scalar, q: Array) -> Array:
     along = (slope + dd)[:, None] + d_fibre
     d_tilt = (d_fibre * psi[:, None]).sum(-1) + (fibre * dpsi[:, None]).sum(-1)
     own = (before**2).sum(-1)
-    strain = (du[:, None] - d_tilt + 0.5 * ((along**2).sum(-1) - own)) / (1.0 + own)
-    kappa = (dphi - (dpsi * quarter_turn(slope)).sum(-1)) / (1.0 + (slope**2).sum(-1))
-    stretched = 0.5 * material.youngs_modulus * (beam.areas * strain**2).sum(-1)
-    twisted = 0.5 * material.shear_modulus * beam.torsion_constant * kappa**2
+    # The mean over the section of all that stretches it but u is taken out by u: the polynomials
+    # are not rich enough to make up for products of slopes, and the blade would lock.
+    stretch, share = 0.5 * ((along**2).sum(-1) - own) - d_tilt, beam.areas / (1.0 + own)
+    mean = (share * stretch).sum(-1) / share.sum(-1)
+    strain = (mean_strain[:, None] + stretch - mean[:, None]) / (1.0 + own)
+    twist = (dphi - (dpsi * quarter_turn(slope)).sum(-1)) / (1.0 + (slope**2).sum(-1))
+    u = _BASIS.value @ q[0] - beam.length * (_BASIS.integral @ mean)
+    outward = u[:, None] - (fibre * psi[:, None]).sum(-1)
+    moved = d[:, None] + fibre - a
+    return Deformed(strain, twist, jnp.concatenate([outward[..., None], moved], axis=-1))
 
+
+def potential(beam: Beam, rotation_speed: Scalar, q: Array) -> Array:
+    """Compute the potential of a blade that turns, without that of the loads.
+
+    Parameters
+    ----------
+    beam : Beam
+        The blade.
+    rotation_speed : scalar
+        Rotation speed [rad/s].
+    q : (4, N_SHAPES) array
+        Amplitudes of the stretch [m], psi_y, psi_z and phi [rad].
+
+    Returns
+    -------
+    scalar
+        Energy of the strain less the work of the centrifugal force, 0 undeformed [J].
+    """
+    material = beam.material
+    strain, twist, displacement = deformed(beam, q)
+    stretched = 0.5 * material.youngs_modulus * (beam.areas * strain**2).sum(-1)
+    twisted = 0.5 * material.shear_modulus * beam.torsion_constant * twist**2
     x = beam.root + beam.length * jnp.asarray(_NODES)[:, None]
-    dx = u[:, None] - (fibre * psi[:, None]).sum(-1)
-    y = beam.axis[:, None, 0] + a[..., 0]
-    dy = d[:, None, 0] + fibre[..., 0] - a[..., 0]
+    y = beam.axis[:, None, 0] + beam.fibres[..., 0]
+    dx, dy = displacement[..., 0], displacement[..., 1]
     outward = (beam.areas * (dx * (2.0 * x + dx) + dy * (2.0 * y + dy))).sum(-1)
     centrifugal = 0.5 * material.density * rotation_speed**2 * outward
     return beam.length * (jnp.asarray(_WEIGHTS) @ (stretched + twisted - centrifugal))
@@ -195,7 +241,7 @@ def work(beam: Beam, basis: Shapes, loads: SectionForces, q: Array) -> Array:
     loads : SectionForces
         Loads of these sections.
     q : (4, N_SHAPES) array
-        Amplitudes of u [m], psi_y, psi_z and phi [rad].
+        Amplitudes of the stretch [m], psi_y, psi_z and phi [rad].
 
     Returns
     -------

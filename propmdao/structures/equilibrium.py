@@ -28,7 +28,7 @@ class Equilibrium:
     Attributes
     ----------
     amplitudes : (4, N_SHAPES) array
-        Amplitudes of u [m], psi_y, psi_z and phi [rad], as `beam.motion` takes them.
+        Amplitudes of the stretch [m], psi_y, psi_z and phi [rad], as `beam.motion` takes them.
     stable : bool
         Whether Newton's method came to rest, in a minimum of the potential.
     """

@@ -129,3 +129,16 @@ def test_a_blade_that_cannot_stand_says_so(bar):
     """A bar as soft as this has no minimum near its shape under a moment of this size."""
     soft = replace(bar, young=70e3, shear=26e3, beta=0.3)
     assert not equilibrium(soft.beam, 300.0, BASIS, loads(z=50.0, moment=20.0)).stable
+
+
+def test_a_raked_and_swept_blade_does_not_lock(bar):
+    """A wavy axis, steeper than polynomials can follow, is as soft as one that is straight."""
+    beam = bar.beam
+    s, wave = gauss(40)[0], 0.1
+    slope = wave * np.stack([np.sin(25.0 * s), np.cos(25.0 * s)], axis=-1)
+    wavy = replace(beam, axis_slope=jnp.asarray(slope))
+    soft = [
+        float(motion(b, shapes([1.0]), equilibrium(b, 0.0, BASIS, loads(z=0.01)).amplitudes)[0][0, 1])
+        for b in (beam, wavy)
+    ]
+    assert soft[1] == pytest.approx(soft[0], rel=3 * wave**2)
