@@ -167,9 +167,9 @@ def _model(places: Mapping[str, dict[str, Any]]) -> Model:
         raise ValueError(f"trip {trip!r} is about broadband noise: ask for broadband noise, too")
     loads = dict(places.get("model.loads", {}))
     elastic, material = loads.pop("elastic", False), places.get("model.loads.elastic", {})
-    given = [name for name, value in material.items() if value is not None]
-    if given and not elastic:
-        raise ValueError(f"{given[0]} is about an elastic blade: ask for elastic, too")
+    named = [name for name, value in material.items() if value is not None]
+    if named and not elastic:
+        raise ValueError(f"{named[0]} is about an elastic blade: ask for elastic, too")
     loads["elastic"] = ElasticModel(**material) if elastic else None
     loads["transition"] = Transition(**places.get("model.loads.transition", {}))
     return Model(

@@ -18,7 +18,7 @@ from propmdao.acoustics.levels.weighting import level_dba, oaspl_dba
 from propmdao.acoustics.signals import Tones
 from propmdao.aerodynamics.coefficients import Coefficients
 from propmdao.aerodynamics.solutions.result import RotorLoads, failure
-from propmdao.analysis.elastic import Deflection
+from propmdao.analysis.elastic.deflections import Deflection
 from propmdao.analysis.request import Request
 from propmdao.analysis.self_noise import BANDS_HZ
 from propmdao.propeller.changes import Change

@@ -26,7 +26,8 @@ from propmdao.aerodynamics.solutions.case import RotorCase
 from propmdao.aerodynamics.solutions.result import RotorLoads
 from propmdao.aerodynamics.trim import rotation_bounds, trim
 from propmdao.aerodynamics.wakes.helical import wake_transport
-from propmdao.analysis.elastic import Solved, deflected, material_of
+from propmdao.analysis.elastic.deflections import Solved, deflected
+from propmdao.analysis.elastic.materials import material_of
 from propmdao.analysis.request import Asked, Request
 from propmdao.analysis.results import MECHANISMS, Analysis
 from propmdao.analysis.self_noise import BANDS_HZ, self_noise, strip_flow

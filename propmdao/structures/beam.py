@@ -1,9 +1,9 @@
 """A slender blade that turns: its potential as a beam that twists, bends and stretches.
 
-The section at the radius r moves by u outward and by d = (v, w) with the elastic axis c(r), turns by
-phi about the radial line, nose up, and tilts by psi out of its plane. With J the quarter turn in the
-plane, a primed symbol a derivative along the radius, and a fibre at a = (y, z) from the elastic axis,
-turned to A,
+The section at the radius r moves by u outward and by d = (v, w) with the elastic axis c(r), turns
+by phi about the radial line, nose up, and tilts by psi out of its plane. With J the quarter turn
+in the plane, a primed symbol a derivative along the radius, and a fibre at a = (y, z) from the
+elastic axis, turned to A,
 
     d' = psi + phi J c'                                 sections stay normal to the elastic axis
     (u - A . psi, d + A - a)                            displacement of the fibre
@@ -16,12 +16,12 @@ potential without that of the air loads is
 
     Pi = 1/2 int (int E eps^2 dA + G J_t kappa^2) dr - 1/2 Omega^2 int int rho (x^2 + y^2) dA dr.
 
-The centrifugal force is in it through the distance of each fibre from the axis of rotation. Tension
-that stiffens, the propeller moment that turns a blade flat, the trapeze effect and the moments of
-sweep and rake all follow; none is modelled by itself.
+The centrifugal force is in it through the distance of each fibre from the axis of rotation.
+Tension that stiffens, the propeller moment that turns a blade flat, the trapeze effect and the
+moments of sweep and rake all follow; none is modelled by itself.
 
-Ritz's method: the mean of eps over the section, psi and phi are `shapes` or their derivatives; u and d
-follow by integration.
+Ritz's method: the mean of eps over the section, psi and phi are `shapes` or their derivatives; u
+and d follow by integration.
 """
 
 from __future__ import annotations
@@ -136,9 +136,9 @@ def motion(beam: Beam, basis: Shapes, q: Array) -> tuple[Array, Array]:
     phi : (n,) array
         Turn of the section, nose up [rad].
     """
-    psi, phi = _BASIS.value @ q[1:3].T, _BASIS.value @ q[3]
+    psi, phi = _BASIS.value @ q[1:3].T, jnp.asarray(_BASIS.value) @ q[3]
     slope = psi + phi[:, None] * quarter_turn(beam.axis_slope)
-    return beam.length * (basis.integral @ slope), basis.value @ q[3]
+    return beam.length * (basis.integral @ slope), jnp.asarray(basis.value) @ q[3]
 
 
 class Deformed(NamedTuple):
@@ -176,7 +176,7 @@ def deformed(beam: Beam, q: Array) -> Deformed:
     """
     slope, a = beam.axis_slope, beam.fibres
     mean_strain, dphi = _BASIS.slope @ q[0] / beam.length, _BASIS.slope @ q[3] / beam.length
-    phi = _BASIS.value @ q[3]
+    phi = jnp.asarray(_BASIS.value) @ q[3]
     psi, dpsi = _BASIS.value @ q[1:3].T, _BASIS.slope @ q[1:3].T / beam.length
     dd = psi + phi[:, None] * quarter_turn(slope)
     d = beam.length * (_BASIS.integral @ dd)
@@ -192,8 +192,8 @@ def deformed(beam: Beam, q: Array) -> Deformed:
     # are not rich enough to make up for products of slopes, and the blade would lock.
     stretch, share = 0.5 * ((along**2).sum(-1) - own) - d_tilt, beam.areas / (1.0 + own)
     mean = (share * stretch).sum(-1) / share.sum(-1)
-    strain = (mean_strain[:, None] + stretch - mean[:, None]) / (1.0 + own)
-    twist = (dphi - (dpsi * quarter_turn(slope)).sum(-1)) / (1.0 + (slope**2).sum(-1))
+    strain = (jnp.asarray(mean_strain)[:, None] + stretch - mean[:, None]) / (1.0 + own)
+    twist = (jnp.asarray(dphi) - (dpsi * quarter_turn(slope)).sum(-1)) / (1.0 + (slope**2).sum(-1))
     u = _BASIS.value @ q[0] - beam.length * (_BASIS.integral @ mean)
     outward = u[:, None] - (fibre * psi[:, None]).sum(-1)
     moved = d[:, None] + fibre - a

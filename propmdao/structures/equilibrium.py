@@ -89,9 +89,7 @@ def equilibrium(
         q, first = state.q, state.n_steps == 0
         by_q, force = stiffness(fixed, q), -slope(fixed, q)
         by_u = jnp.where(outward[:, None] & outward, by_q, others)
-        dq = jnp.linalg.solve(
-            jnp.where(first, by_u, by_q), jnp.where(first & ~outward, 0.0, force)
-        )
+        dq = jnp.linalg.solve(jnp.where(first, by_u, by_q), jnp.where(first & ~outward, 0.0, force))
         energies = jax.lax.map(lambda f: total(fixed, q + f * dq), jnp.append(_FRACTIONS, 0.0))
         falls = energies[:-1] <= energies[-1] + _ROUNDING * jnp.abs(energies[-1])
         fraction = jnp.where(falls.any(), _FRACTIONS[jnp.argmax(falls)], _FRACTIONS[-1])

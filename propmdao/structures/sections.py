@@ -1,10 +1,11 @@
 """A blade of solid sections as a beam: fibres, elastic axis and torsion from its shape.
 
-The elastic axis of a thin solid section, about which it turns without bending, lies where the strips
-of its chord, each stiff in bending as its thickness cubed, balance; it is put on the camber line.
-Torsion is Saint-Venant's for thin solid sections with the usual correction for their thickness
-(Young and Budynas, Roark's Formulas for Stress and Strain, 2002, table 10.1): with I the integral of
-t^3/12 over the chord and A the area, J_t = 4 I / (1 + 16 I / (A c^2)), 4 I = int t^3 dx / 3.
+The elastic axis of a thin solid section, about which it turns without bending, lies where the
+strips of its chord, each stiff in bending as its thickness cubed, balance; it is put on the camber
+line. Torsion is Saint-Venant's for thin solid sections with the usual correction for their
+thickness (Young and Budynas, Roark's Formulas for Stress and Strain, 2002, table 10.1): with I the
+integral of t^3/12 over the chord and A the area, J_t = 4 I / (1 + 16 I / (A c^2)), 4 I = int t^3
+dx / 3.
 """
 
 from __future__ import annotations
@@ -108,16 +109,16 @@ def beam_of(blade: Blade, radii: BeamRadii, material: Material) -> Beam:
         The blade as fibres, clamped at its first station.
     """
     span = radii.span
-    camber, thickness = (
-        values.T for values in section_shape(blade, span, jnp.asarray(_ON_CHORD))
-    )
+    camber, thickness = (values.T for values in section_shape(blade, span, jnp.asarray(_ON_CHORD)))
     x, z = _balance(camber, thickness)
     quarter = jnp.stack([-blade.sweep_over_R, blade.rake_over_R], axis=-1)
     axis = quarter + elastic_axis(blade, radii.stations)
     # Two fibres per strip have its area and its moments, up to the third.
     apart = thickness / np.sqrt(12.0)
     fibres = [
-        _in_plane(blade, span, _FRACTION - x[:, None], camber + side * apart - z[:, None])
+        _in_plane(
+            blade, span, jnp.asarray(_FRACTION) - x[:, None], camber + side * apart - z[:, None]
+        )
         for side in (1.0, -1.0)
     ]
     chord = blade.radius * (span.smooth @ blade.chord_over_R)

@@ -1,16 +1,16 @@
 """How far small propellers twist and bend under their loads, and what that does to static thrust.
 
-Blades held rigid and blades that give, standing still, over rotation speed, beside the measured thrust
-where there is one. The material is that of the propeller's file; for APC's propellers it is the one on
-which the maker's files base the lowest bending frequency: 1.6 million psi for slow flyers, 2.7 for thin
-electrics, specific gravity 1.7. That frequency is computed, too, without rotation: it tests stiffness
-and mass together.
+Blades held rigid and blades that give, standing still, over rotation speed, beside the measured
+thrust where there is one. The material is that of the propeller's file; for APC's propellers it is
+the one on which the maker's files base the lowest bending frequency: 1.6 million psi for slow
+flyers, 2.7 for thin electrics, specific gravity 1.7. That frequency is computed, too, without
+rotation: it tests stiffness and mass together.
 
-The maker's and the GWS blades are thin, so three moments of a degree or more each nearly cancel: lift
-ahead of the elastic axis and the mass of a swept and raked blade wind it in, the nose-down moment of
-cambered sections and the propeller moment turn it flat. What is left depends on the line of the blade,
-which photographs do not show: the published geometry of a straight blade gives another answer than the
-maker's tables.
+The maker's and the GWS blades are thin, so three moments of a degree or more each nearly cancel:
+lift ahead of the elastic axis and the mass of a swept and raked blade wind it in, the nose-down
+moment of cambered sections and the propeller moment turn it flat. What is left depends on the line
+of the blade, which photographs do not show: the published geometry of a straight blade gives
+another answer than the maker's tables.
 """
 
 import argparse
@@ -19,12 +19,13 @@ import dataclasses
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 
+import jax.numpy as jnp
 import numpy as np
 from rich.console import Console
 from rich.table import Table
 
 import propmdao as pm
-from propmdao.analysis.elastic import material_of
+from propmdao.analysis.elastic.materials import material_of
 from propmdao.analysis.wind_tunnel import read_wind_tunnel
 from propmdao.geometry.blade import Blade
 from propmdao.records.models import ElasticModel
@@ -87,7 +88,7 @@ def bending_frequency(propeller: pm.Propeller, material: ElasticModel) -> float:
         beam_radii(propeller.r_over_R),
         material_of(propeller, material),
     )
-    return float(natural_frequencies(beam, 0.0, np.zeros((4, N_SHAPES)))[0] / (2.0 * np.pi))
+    return float(natural_frequencies(beam, 0.0, jnp.zeros((4, N_SHAPES)))[0] / (2.0 * np.pi))
 
 
 def points(
@@ -138,8 +139,8 @@ def main() -> None:
         table = Table(box=None, padding=(0, 2, 0, 0), title=propeller.name, title_justify="left")
         for heading in headings:
             table.add_column(heading, justify="right")
-        found = list(points(propeller, material, options.rpm))
-        for point in found:
+        computed = list(points(propeller, material, options.rpm))
+        for point in computed:
             table.add_row(
                 f"{point.rpm:.0f}",
                 *(f"{twist:+.2f}" for twist in point.twist_deg),
@@ -147,7 +148,7 @@ def main() -> None:
                 *(f"{value:.4f}" for value in (point.rigid, point.elastic, point.measured)),
             )
         Console(highlight=False).print(table)
-        gains = [gain([getattr(point, key) for point in found]) for key in
+        gains = [gain([getattr(point, key) for point in computed]) for key in
                  ("rigid", "elastic", "measured")]  # fmt: skip
         print("gain of CT in %: rigid {:.1f}, elastic {:.1f}, measured {:.1f}".format(*gains))
         frequency = bending_frequency(propeller, material)
@@ -155,7 +156,7 @@ def main() -> None:
         with (options.output / f"{propeller.name}.csv").open("w", newline="") as stream:
             writer = csv.writer(stream)
             writer.writerow(field.name for field in dataclasses.fields(Point))
-            writer.writerows(dataclasses.astuple(point) for point in found)
+            writer.writerows(dataclasses.astuple(point) for point in computed)
 
 
 if __name__ == "__main__":

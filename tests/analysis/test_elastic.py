@@ -6,7 +6,7 @@ import json
 import numpy as np
 import pytest
 
-from propmdao.analysis.elastic import ElasticError, material_of
+from propmdao.analysis.elastic.materials import ElasticError, material_of
 from propmdao.analysis.request import Request
 from propmdao.analysis.single_point import analyze
 from propmdao.analysis.sweeps import sweep

@@ -15,7 +15,7 @@ from propmdao.structures.shapes import N_RADII, gauss, shapes
 
 @dataclasses.dataclass(frozen=True)
 class Bar:
-    """A bar along x from the axis of rotation, of aluminium; its wide side at `beta` to the plane."""
+    """A bar of aluminium from the axis of rotation along x; its wide side at `beta`."""
 
     length: float = 1.0
     width: float = 0.05

@@ -1,8 +1,8 @@
 """A blade that gives under its loads: loads and deflection that belong together.
 
-The air loads bend and twist the blade, and the blade changes the air loads. Both are computed in turn
-until the blade rests, which takes four or five rounds: a degree of twist changes the loads by some
-per cent, and these the twist by as little.
+The air loads bend and twist the blade, and the blade changes the air loads. Both are computed in
+turn until the blade rests, which takes four or five rounds: a degree of twist changes the loads by
+some per cent, and these the twist by as little.
 """
 
 from __future__ import annotations
@@ -20,13 +20,12 @@ from propmdao.aerodynamics.sections.laws import ViscousSections
 from propmdao.aerodynamics.sections.polars.table import curve_coefficients, section_curves
 from propmdao.aerodynamics.solutions.case import RotorCase
 from propmdao.aerodynamics.solutions.result import RotorLoads
+from propmdao.analysis.elastic.materials import ElasticError
 from propmdao.geometry.blade import Blade
 from propmdao.geometry.lattice import strip_interpolation, strip_radii
 from propmdao.propeller.checks import PropellerError
-from propmdao.propeller.description import MATERIAL, Propeller
-from propmdao.records.models import ElasticModel
+from propmdao.propeller.description import Propeller
 from propmdao.records.panels import Panels
-from propmdao.records.quantities import ASKED
 from propmdao.records.states import RotorState
 from propmdao.runtime.compilation import compiled
 from propmdao.structures.beam import Beam, Material, SectionForces, motion, turned
@@ -36,15 +35,9 @@ from propmdao.structures.shapes import Shapes, shapes
 
 FloatArray = npt.NDArray[np.float64]
 
-#: Young's over shear modulus where the latter is not given: Poisson's ratio 0.35, as of plastics.
-YOUNG_OVER_SHEAR = 2.7
 _TOLERANCE = 1.0e-4  # of the twist between two rounds [deg]
 _MOST_ROUNDS = 40
 _MOST_TWIST = 45.0  # beyond which the sections' flow and the beam mean nothing any more [deg]
-
-
-class ElasticError(ValueError):
-    """The blade does not come to rest under its loads, or its material is not known."""
 
 
 @dataclasses.dataclass(frozen=True)
@@ -82,13 +75,13 @@ class Solved(NamedTuple):
     Attributes
     ----------
     blade : Blade
-        Its blade.
+        Blade of the propeller.
     panels : Panels
         Closed surface of the blade.
     case : RotorCase
         Case that was solved.
     loads : RotorLoads
-        Its loads.
+        Loads of the case.
     state : RotorState
         How the rotor turns and flies, which a thrust required decides.
     """
@@ -98,43 +91,6 @@ class Solved(NamedTuple):
     case: RotorCase
     loads: RotorLoads
     state: RotorState
-
-
-def material_of(propeller: Propeller, model: ElasticModel) -> Material:
-    """Find what a propeller is made of.
-
-    Parameters
-    ----------
-    propeller : Propeller
-        The described blade, which may name its material.
-    model : ElasticModel
-        What is known better.
-
-    Returns
-    -------
-    Material
-        The material; the shear modulus, where neither has it, is Young's over `YOUNG_OVER_SHEAR`.
-
-    Raises
-    ------
-    ElasticError
-        If Young's modulus or the density is not known.
-    """
-    known = {}
-    for name in MATERIAL:
-        asked = getattr(model, name)
-        known[name] = getattr(propeller, name) if asked is None else asked
-        if known[name] is None and name != "shear_modulus":
-            raise ElasticError(
-                f"{propeller.name} has no {name} [{ASKED[name].unit}], which an elastic blade needs:"
-                f" give it in the propeller file or by {ASKED[name].option}"
-            )
-    young, shear = known["youngs_modulus"], known["shear_modulus"]
-    return Material(
-        youngs_modulus=young,
-        shear_modulus=young / YOUNG_OVER_SHEAR if shear is None else shear,
-        density=known["material_density"],
-    )
 
 
 def deflected(
@@ -173,10 +129,10 @@ def deflected(
             return deflection, solved
         deflection = following
         try:
-            given = deflection.applied_to(propeller)
+            bent = deflection.applied_to(propeller)
         except PropellerError as error:
             raise ElasticError(f"the blade does not stand its loads: {error}") from error
-        solved = solve(given)
+        solved = solve(bent)
     raise ElasticError(
         f"the blade does not come to rest under its loads: after {_MOST_ROUNDS} rounds its twist"
         f" still changes by {change:.2g} deg"
@@ -194,7 +150,7 @@ class _Hold:
         self.beam = beam_of(blade, radii, material)
         strips = strip_interpolation(stations, n_strips)
         # From the elastic axis to the quarter chord.
-        self.arms = [-blade.radius * elastic_axis(blade, at) for at in (strips, radii.stations)]
+        self.arms = [-blade.radius * elastic_axis(blade, span) for span in (strips, radii.stations)]
         self.places = [
             shapes((r - root) / (1.0 - root)) for r in (strip_radii(root, n_strips), stations)
         ]
@@ -205,7 +161,11 @@ class _Hold:
         assert sections is not None  # `LoadModel` has refused inviscid flow
         loads = _air_loads(solved.loads, sections, solved.state, self.arms[0])
         moved, turn, stable = _given(
-            self.beam, solved.state.rotation_speed, loads, self.places, self.arms[1]
+            self.beam,
+            jnp.asarray(solved.state.rotation_speed, float),
+            loads,
+            self.places,
+            self.arms[1],
         )
         twist_deg = np.degrees(np.asarray(turn))
         worst = int(np.argmax(np.abs(twist_deg)))
@@ -239,6 +199,6 @@ def _given(
     beam: Beam, rotation_speed: Array, loads: SectionForces, places: list[Shapes], arm: Array
 ) -> tuple[Array, Array, Array]:
     """Displacement of the quarter chord and turn at the stations, and whether the blade rests."""
-    found = equilibrium(beam, rotation_speed, places[0], loads)
-    axis, turn = motion(beam, places[1], found.amplitudes)
-    return axis + turned(arm, turn) - arm, turn, found.stable
+    rest = equilibrium(beam, rotation_speed, places[0], loads)
+    axis, turn = motion(beam, places[1], rest.amplitudes)
+    return axis + turned(arm, turn) - arm, turn, rest.stable
