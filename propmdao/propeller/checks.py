@@ -26,6 +26,8 @@ CHORD = Range(1e-6, 10.0)
 OFFSET = Range(-10.0, 10.0)
 #: Maximum thickness over chord.
 THICKNESS = Range(1e-4, 0.999)
+#: Cross-section over the chord squared.
+AREA = Range(1e-5, 10.0)
 
 
 class PropellerError(ValueError):

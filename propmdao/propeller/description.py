@@ -25,6 +25,7 @@ DISTRIBUTIONS = (
     "thickness_over_chord",
     "sweep_over_R",
     "rake_over_R",
+    "area_over_c2",
 )
 
 #: Material of a propeller, none of which need be known.
@@ -61,6 +62,9 @@ class Propeller:
     rake_over_R : (n_stations,) array or number, optional
         Distance of the quarter chord from the rotor plane toward thrust over the tip radius, 0 by
         default.
+    area_over_c2 : (n_stations,) array, optional
+        Cross-section of the solid blade over the chord squared, for elastic blades; by default that
+        of the airfoils at their thickness. Roots that run into a hub have more.
     source : str
         Origin of the numbers.
     youngs_modulus, shear_modulus : float, optional
@@ -84,6 +88,7 @@ class Propeller:
     thickness_over_chord: FloatArray | None = None
     sweep_over_R: FloatArray = dataclasses.field(default_factory=lambda: np.zeros(()))
     rake_over_R: FloatArray = dataclasses.field(default_factory=lambda: np.zeros(()))
+    area_over_c2: FloatArray | None = None
     source: str = ""
     youngs_modulus: float | None = None
     shear_modulus: float | None = None
@@ -107,7 +112,7 @@ class Propeller:
         object.__setattr__(self, "r_over_R", r)
         for key in DISTRIBUTIONS[1:]:
             value = getattr(self, key)
-            if key == "thickness_over_chord" and value is None:
+            if key in ("thickness_over_chord", "area_over_c2") and value is None:
                 continue
             if key in ("sweep_over_R", "rake_over_R"):
                 value = _everywhere(key, value, r)
@@ -119,6 +124,8 @@ class Propeller:
         checks.require("beta_deg", "be within -90..90", np.abs(beta) <= 90.0, beta, r)
         if thickness is not None:
             checks.require_within("thickness_over_chord", checks.THICKNESS, thickness, r)
+        if self.area_over_c2 is not None:
+            checks.require_within("area_over_c2", checks.AREA, self.area_over_c2, r)
         object.__setattr__(self, "airfoils", checks.airfoil_pairs(self.airfoils))
 
     def __setstate__(self, state: dict[str, Any]) -> None:

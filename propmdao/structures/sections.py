@@ -10,6 +10,8 @@ dx / 3.
 
 from __future__ import annotations
 
+import dataclasses
+
 import jax.numpy as jnp
 import numpy as np
 import numpy.typing as npt
@@ -18,7 +20,7 @@ from scipy.interpolate import CubicSpline
 
 from propmdao.geometry.blade import Blade, SpanInterpolation, span_interpolation
 from propmdao.geometry.section import section_shape
-from propmdao.propeller.airfoils.airfoil import chord_interpolation
+from propmdao.propeller.airfoils.airfoil import CHORD_FRACTION, chord_interpolation
 from propmdao.records.pytrees import record
 from propmdao.structures.beam import Beam, Material
 from propmdao.structures.shapes import N_RADII, gauss
@@ -89,6 +91,25 @@ def elastic_axis(blade: Blade, span: SpanInterpolation) -> Array:
     camber, thickness = section_shape(blade, span, jnp.asarray(_ON_CHORD))
     x, z = _balance(camber.T, thickness.T)
     return _in_plane(blade, span, (x - 0.25)[:, None], z[:, None])[:, 0]
+
+
+def filled(blade: Blade, area_over_c2: npt.ArrayLike) -> Blade:
+    """Thicken the sections of a blade to given areas, for its stiffness and its mass.
+
+    Parameters
+    ----------
+    blade : Blade
+        The blade.
+    area_over_c2 : (n_stations,) array
+        Cross-sections over the chord squared.
+
+    Returns
+    -------
+    Blade
+        Blade of the same section shapes, as thick as the areas need.
+    """
+    own = jnp.trapezoid(blade.thickness_shape, jnp.asarray(CHORD_FRACTION), axis=1)
+    return dataclasses.replace(blade, thickness_over_chord=jnp.asarray(area_over_c2) / own)
 
 
 def beam_of(blade: Blade, radii: BeamRadii, material: Material) -> Beam:

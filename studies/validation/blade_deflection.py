@@ -25,12 +25,11 @@ from rich.console import Console
 from rich.table import Table
 
 import propmdao as pm
+from propmdao.analysis.elastic.deflections import beam_of_propeller
 from propmdao.analysis.elastic.materials import material_of
 from propmdao.analysis.wind_tunnel import read_wind_tunnel
-from propmdao.geometry.blade import Blade
 from propmdao.records.models import ElasticModel
 from propmdao.records.units import RAD_PER_S
-from propmdao.structures.sections import beam_of, beam_radii
 from propmdao.structures.shapes import N_SHAPES
 from propmdao.structures.vibration import natural_frequencies
 
@@ -83,11 +82,7 @@ def measured_thrust(name: str) -> tuple[np.ndarray, np.ndarray] | None:
 
 def bending_frequency(propeller: pm.Propeller, material: ElasticModel) -> float:
     """Lowest natural frequency of a blade that does not turn, clamped at its first station [Hz]."""
-    beam = beam_of(
-        Blade.from_propeller(propeller),
-        beam_radii(propeller.r_over_R),
-        material_of(propeller, material),
-    )
+    beam = beam_of_propeller(propeller, material_of(propeller, material))[2]
     return float(natural_frequencies(beam, 0.0, jnp.zeros((4, N_SHAPES)))[0] / (2.0 * np.pi))
 
 

@@ -74,9 +74,20 @@ def test_results_say_how_far_it_gave_and_of_what(given):
     assert Request.from_dict(elastic).model.loads.elastic == ElasticModel(youngs_modulus=20e9)
 
 
+def test_full_roots_give_less(given):
+    """Sections four times as full as the airfoils', as where a blade runs into its hub."""
+    area = np.where(RIGID.r_over_R < 0.3, 0.12, 0.03)
+    full = run(dataclasses.replace(BLADE, area_over_c2=area), elastic=True)
+    assert full.deflection.rake_over_R[-1] < 0.9 * given.deflection.rake_over_R[-1]
+    with pytest.raises(PropellerError, match="area_over_c2 must be within .*; station 1"):
+        dataclasses.replace(BLADE, area_over_c2=-area)
+
+
 def test_material_is_the_files_unless_asked_for(tmp_path):
-    write_toml(tmp_path / "blade.toml", BLADE)
+    area = np.full(RIGID.r_over_R.size, 0.04)
+    write_toml(tmp_path / "blade.toml", dataclasses.replace(BLADE, area_over_c2=area))
     propeller = read_toml(tmp_path / "blade.toml")
+    np.testing.assert_array_equal(propeller.area_over_c2, area)
     material = material_of(propeller, ElasticModel(material_density=1200.0))
     assert (material.youngs_modulus, material.density) == (11.0e9, 1200.0)
     assert material.shear_modulus == pytest.approx(11.0e9 / 2.7)

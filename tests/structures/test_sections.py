@@ -10,7 +10,7 @@ from propmdao.geometry.blade import Blade
 from propmdao.geometry.lattice import strip_interpolation
 from propmdao.propeller.description import Propeller
 from propmdao.structures.beam import Material
-from propmdao.structures.sections import beam_of, beam_radii, elastic_axis
+from propmdao.structures.sections import beam_of, beam_radii, elastic_axis, filled
 
 PLASTIC = Material(10e9, 4e9, 1500.0)
 STATIONS = np.linspace(0.2, 1.0, 9)
@@ -74,6 +74,17 @@ def test_an_ellipse_twists_as_saint_venant_has_it():
     np.testing.assert_allclose(
         found.torsion_constant, np.pi * a**3 * b**3 / (a**2 + b**2), rtol=1e-6
     )
+
+
+def test_a_section_can_be_filled_to_its_area():
+    blade = Blade.from_propeller(propeller())
+    radii = beam_radii(STATIONS)
+    plain = beam_of(blade, radii, PLASTIC)
+    own = plain.areas.sum(axis=1) / CHORD**2
+    full = beam_of(filled(blade, np.full(9, 2.0 * float(own[0]))), radii, PLASTIC)
+    np.testing.assert_allclose(full.areas.sum(axis=1), 2.0 * own * CHORD**2, rtol=1e-3)
+    # Twice as thick: eight times the torsion constant, but for the correction of thick sections.
+    assert float(full.torsion_constant[0] / plain.torsion_constant[0]) == pytest.approx(8, rel=0.06)
 
 
 def test_camber_stiffens_bending_but_not_torsion():

@@ -30,7 +30,13 @@ from propmdao.records.states import RotorState
 from propmdao.runtime.compilation import compiled
 from propmdao.structures.beam import Beam, Material, SectionForces, motion, turned
 from propmdao.structures.equilibrium import equilibrium
-from propmdao.structures.sections import beam_of, beam_radii, elastic_axis
+from propmdao.structures.sections import (
+    BeamRadii,
+    beam_of,
+    beam_radii,
+    elastic_axis,
+    filled,
+)
 from propmdao.structures.shapes import Shapes, shapes
 
 FloatArray = npt.NDArray[np.float64]
@@ -139,15 +145,36 @@ def deflected(
     )
 
 
+def beam_of_propeller(propeller: Propeller, material: Material) -> tuple[Blade, BeamRadii, Beam]:
+    """Turn a described propeller into a beam.
+
+    Parameters
+    ----------
+    propeller : Propeller
+        The described blade; its cross-sections are those it names, or those of its airfoils.
+    material : Material
+        Material of the blade.
+
+    Returns
+    -------
+    blade, radii, beam : Blade, BeamRadii, Beam
+        Blade as it is stiff, interpolation from its stations, and the beam.
+    """
+    blade = Blade.from_propeller(propeller)
+    if propeller.area_over_c2 is not None:
+        blade = filled(blade, propeller.area_over_c2)
+    radii = beam_radii(propeller.r_over_R)
+    return blade, radii, beam_of(blade, radii, material)
+
+
 class _Hold:
     """Beam of a blade, and where it is loaded and looked at."""
 
     def __init__(self, propeller: Propeller, material: Material, n_strips: int) -> None:
         stations = propeller.r_over_R
-        blade, radii = Blade.from_propeller(propeller), beam_radii(stations)
         root = stations[0]
-        self.r_over_R, self.radius = stations, float(blade.radius)
-        self.beam = beam_of(blade, radii, material)
+        blade, radii, beam = beam_of_propeller(propeller, material)
+        self.r_over_R, self.radius, self.beam = stations, float(blade.radius), beam
         strips = strip_interpolation(stations, n_strips)
         # From the elastic axis to the quarter chord.
         self.arms = [-blade.radius * elastic_axis(blade, span) for span in (strips, radii.stations)]
