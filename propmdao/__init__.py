@@ -21,7 +21,7 @@ _HOMES = {
     "Analysis": "analysis.results",
     "Change": "propeller.changes",
     "Fidelity": "records.fidelity",
-    "Flight": "analysis.flyover_results",
+    "Flight": "analysis.flights.flyover_results",
     "Listening": "records.listening",
     "LoadModel": "records.models",
     "Model": "records.models",
@@ -38,7 +38,7 @@ _HOMES = {
     "arc": "acoustics.kinematics.observers",
     "band": "analysis.uncertainty",
     "circle": "acoustics.kinematics.observers",
-    "fly_over": "analysis.flyovers",
+    "fly_over": "analysis.flights.flyovers",
     "grid": "acoustics.kinematics.observers",
     "hemisphere": "acoustics.kinematics.observers",
     "load_propeller": "formats.propellers",
@@ -83,8 +83,8 @@ if TYPE_CHECKING:  # what editors and type checkers see
     from propmdao.acoustics.kinematics.observers import grid as grid
     from propmdao.acoustics.kinematics.observers import hemisphere as hemisphere
     from propmdao.acoustics.kinematics.observers import point as point
-    from propmdao.analysis.flyover_results import Flight as Flight
-    from propmdao.analysis.flyovers import fly_over as fly_over
+    from propmdao.analysis.flights.flyover_results import Flight as Flight
+    from propmdao.analysis.flights.flyovers import fly_over as fly_over
     from propmdao.analysis.results import Analysis as Analysis
     from propmdao.analysis.single_point import analyze as analyze
     from propmdao.analysis.sweeps import sweep as sweep

@@ -13,7 +13,7 @@ FLOORS = [
     {"records"},
     {"propeller"},
     {"geometry"},
-    {"aerodynamics", "acoustics"},
+    {"aerodynamics", "acoustics", "structures"},
     {"formats"},
     {"analysis"},
     {"figures", "components"},

@@ -12,7 +12,15 @@ from propmdao.propeller.changes import Change
 from propmdao.records.air import Air
 from propmdao.records.fidelity import Fidelity
 from propmdao.records.listening import Listening, Surroundings
-from propmdao.records.models import LoadModel, Model, NoiseModel, SelfNoiseModel, Transition, Trip
+from propmdao.records.models import (
+    ElasticModel,
+    LoadModel,
+    Model,
+    NoiseModel,
+    SelfNoiseModel,
+    Transition,
+    Trip,
+)
 from propmdao.records.plain import from_plain, to_plain
 from propmdao.records.quantities import ASKED
 from propmdao.records.states import OperatingPoint
@@ -38,6 +46,10 @@ class Asked(TypedDict, total=False):
     viscous: bool
     stall_delay: bool
     measured_drag: bool
+    elastic: bool
+    youngs_modulus: float | None
+    shear_modulus: float | None
+    material_density: float | None
     broadband: bool
     trip: Trip
     wake: WakeLaw
@@ -156,14 +168,21 @@ def _model(places: Mapping[str, dict[str, Any]]) -> Model:
     if trip != "none" and not broadband:
         raise ValueError(f"trip {trip!r} is about broadband noise: ask for broadband noise, too")
     transition = places.get("model.loads.transition", {})
-    if not places.get("model.loads", {}).get("viscous", True):
+    loads = dict(places.get("model.loads", {}))
+    if not loads.get("viscous", True):
         for name, value in transition.items():
             if value is not None:
                 raise ValueError(
                     f"{name} is about the polars of the sections: inviscid flow has none"
                 )
+    elastic, material = loads.pop("elastic", False), places.get("model.loads.elastic", {})
+    named = [name for name, value in material.items() if value is not None]
+    if named and not elastic:
+        raise ValueError(f"{named[0]} is about an elastic blade: ask for elastic, too")
+    loads["elastic"] = ElasticModel(**material) if elastic else None
+    loads["transition"] = Transition(**transition)
     return Model(
-        loads=LoadModel(**places.get("model.loads", {}), transition=Transition(**transition)),
+        loads=LoadModel(**loads),
         noise=NoiseModel(SelfNoiseModel(**self_noise) if broadband else None),
         **places.get("model", {}),
     )

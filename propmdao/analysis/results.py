@@ -18,6 +18,7 @@ from propmdao.acoustics.levels.weighting import level_dba, oaspl_dba
 from propmdao.acoustics.signals import Tones
 from propmdao.aerodynamics.coefficients import Coefficients
 from propmdao.aerodynamics.solutions.result import RotorLoads, failure
+from propmdao.analysis.elastic.deflections import Deflection
 from propmdao.analysis.request import Request
 from propmdao.analysis.self_noise import BANDS_HZ
 from propmdao.propeller.changes import Change
@@ -25,6 +26,7 @@ from propmdao.propeller.description import Propeller
 from propmdao.propeller.identity import checksum
 from propmdao.records.listening import Listening
 from propmdao.records.models import Model
+from propmdao.records.plain import to_plain
 from propmdao.records.states import OperatingPoint, RotorState
 from propmdao.records.units import RAD_PER_S
 from propmdao.runtime.compilation import compiled
@@ -55,6 +57,8 @@ class Analysis:
         Mean squares in the third octaves `propmdao.analysis.self_noise.BANDS_HZ`, where asked for.
     polars : dict of str to str
         Where the polars of each airfoil come from; empty for inviscid flow.
+    deflection : Deflection or None
+        How far the blade has given, where an elastic one was asked for.
     """
 
     propeller: Propeller
@@ -65,6 +69,7 @@ class Analysis:
     tones: Tones
     broadband: SelfNoise | None
     polars: dict[str, str] = dataclasses.field(default_factory=dict)
+    deflection: Deflection | None = None
 
     @property
     def point(self) -> OperatingPoint:
@@ -93,8 +98,9 @@ class Analysis:
 
     @property
     def changed_propeller(self) -> Propeller:
-        """The blade that was analysed: the described one with its change."""
-        return self.change.applied_to(self.propeller)
+        """The blade that was analysed: the described one with its change, as far as it gives."""
+        changed = self.change.applied_to(self.propeller)
+        return changed if self.deflection is None else self.deflection.applied_to(changed)
 
     def spl_bpf_db(self) -> npt.NDArray[np.float64]:
         """Level at the blade passage frequency at every observer [dB]."""
@@ -109,7 +115,9 @@ class Analysis:
             What was asked: propeller (name, diameter, n_blades, checksum of the description,
             source), change, point, model, listening, and where the polars come from; then rpm,
             speed, rho, J, thrust, torque, shaft_power, CT, CQ, CP, eta, figure_of_merit, converged,
-            failure (None, or why it did not converge) and a list of observers with their levels.
+            failure (None, or why it did not converge), deflection (None, or r_over_R, twist_deg,
+            sweep_over_R and rake_over_R of an elastic blade) and a list of observers with their
+            levels.
         """
         levels = jax.tree.map(np.asarray, _levels(self.tones))
         places = directions(self.listening.observers).rounded()
@@ -133,6 +141,7 @@ class Analysis:
             "figure_of_merit": float(self.coefficients.figure_of_merit),
             "converged": bool(self.loads.converged),
             "failure": failure(self.loads),
+            "deflection": to_plain(self.deflection),
             "observers": [
                 {
                     "elevation_deg": float(places.elevation_deg[i]),

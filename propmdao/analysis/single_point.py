@@ -26,6 +26,8 @@ from propmdao.aerodynamics.solutions.case import RotorCase
 from propmdao.aerodynamics.solutions.result import RotorLoads
 from propmdao.aerodynamics.trim import rotation_bounds, trim
 from propmdao.aerodynamics.wakes.helical import wake_transport
+from propmdao.analysis.elastic.deflections import Solved, deflected
+from propmdao.analysis.elastic.materials import material_of
 from propmdao.analysis.request import Asked, Request
 from propmdao.analysis.results import MECHANISMS, Analysis
 from propmdao.analysis.self_noise import BANDS_HZ, self_noise, strip_flow
@@ -103,11 +105,11 @@ def analyze(
         require_known_air(point.air)
     paths = sound_paths(listening.observers, listening.surroundings)
 
-    blade, fidelity = Blade.from_propeller(changed), model.fidelity
+    elastic = model.loads.elastic
+    material = None if elastic is None else material_of(changed, elastic)
+    fidelity, sources = model.fidelity, {}
     stations = changed.r_over_R
     radii = mesh_radii(stations, fidelity.n_spanwise, fidelity.n_surface_span)
-    nodes, panels = _meshes(blade, radii, fidelity.n_chordwise, fidelity.n_contour)
-    sections, sources = None, {}
     if model.loads.viscous:
         transition = model.loads.transition
         if polars is None:
@@ -116,14 +118,29 @@ def analyze(
             polars = polars_for(changed, None, transition, measured_drag)
         else:
             sources = dict.fromkeys((name for _, name in changed.airfoils), "given")
-        sections = viscous_sections(polars, blade, radii.strips, float(model.loads.stall_delay))
-    case = RotorCase(
-        RotorGeometry(nodes, radius, int(changed.n_blades)),
-        point.at(0.0),
-        sections,
-        wake_transport(model.loads.wake, fidelity.wake),
-    )
-    loads, state = _solve(case, point)
+
+    def held(propeller: Propeller) -> Solved:
+        """Loads of a propeller that is held in its shape."""
+        blade = Blade.from_propeller(propeller)
+        nodes, panels = _meshes(blade, radii, fidelity.n_chordwise, fidelity.n_contour)
+        sections = None
+        if model.loads.viscous:
+            assert polars is not None
+            delay = float(model.loads.stall_delay)
+            sections = viscous_sections(polars, blade, radii.strips, delay)
+        case = RotorCase(
+            RotorGeometry(nodes, radius, int(propeller.n_blades)),
+            point.at(0.0),
+            sections,
+            wake_transport(model.loads.wake, fidelity.wake),
+        )
+        return Solved(blade, panels, case, *_solve(case, point))
+
+    if material is None:
+        deflection, solved = None, held(changed)
+    else:
+        deflection, solved = deflected(changed, material, held)
+    blade, panels, case, loads, state = solved
     if polars is not None and model.loads.viscous:
         warn_outside_sections(polars, blade, stations)
         _warn_outside_polars(case, loads)
@@ -149,6 +166,7 @@ def analyze(
         tones=tones_by_paths(sound, paths, state, listening.surroundings),
         broadband=noise,
         polars=sources,
+        deflection=deflection,
     )
     _require_numbers(analysis)
     return analysis

@@ -197,6 +197,8 @@ def sweep(
     _N_POINTS.require("number of points", len(points))
     # Whatever is wrong with what all points share is said before the first of them.
     request = Request.of(rpm=0.0, **asked)
+    if request.model.loads.elastic is not None:
+        raise ValueError("points of a sweep have rigid blades: analyze elastic ones one by one")
     same = _same_columns(request)
     complete = [_complete(propeller, point) | same for point in points]
     drives = {"rpm" if "rpm" in point else "thrust_required" for point in complete}

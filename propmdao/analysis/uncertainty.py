@@ -16,6 +16,7 @@ from typing import Any
 import numpy as np
 
 from propmdao.aerodynamics.sections.polars.family import SectionPolars, with_drag
+from propmdao.aerodynamics.sections.polars.measured_drag import DRAG_SCATTER
 from propmdao.aerodynamics.sections.polars.propeller_polars import polars_for
 from propmdao.aerodynamics.sections.polars.table import PolarError
 from propmdao.analysis.request import Request
@@ -46,9 +47,8 @@ class Uncertainties:
     The defaults are of model propellers whose geometry was measured or published, none of them of
     one blade: photographed blade angles differ from the maker's own tables by 0.7 to 2.1 deg on
     slow flyers and 0.2 to 1.4 deg on thin blades, chords by 2 to 4 % (UIUC Propeller Data Site,
-    volumes 1-3, against APC's PE0 files); at equal lift the measured drag of 24 sections at
-    Reynolds numbers of 30 to 200 thousand scatters by 20 % about its trend (Selig and others,
-    Summary of Low-Speed Airfoil Data; two tunnels). Transition is early on a rough blade in its own
+    volumes 1-3, against APC's PE0 files); what measured drag of sections scatters about the polars'
+    is `propmdao.aerodynamics.sections.polars.measured_drag.DRAG_SCATTER`. Transition is early on a rough blade in its own
     wake, n_crit 3, and late in still air on a smooth one, 9.
 
     Attributes
@@ -71,13 +71,15 @@ class Uncertainties:
     twist_deg: float = 1.0
     chord: float = 0.03
     n_crit: tuple[float, float] = (3.0, 9.0)
-    drag: float = 0.2
+    drag: float = DRAG_SCATTER
 
     def __post_init__(self) -> None:
         """Refuse sizes that mean nothing."""
         for name, allowed in _SIZES.items():
             allowed.require(name, getattr(self, name))
-        low, high = (Transition(n_crit).n_crit for n_crit in self.n_crit)  # which refuses, too
+        low, high = self.n_crit
+        for n_crit in self.n_crit:
+            Transition(n_crit)  # refuses what no boundary layer has
         if not low <= high:
             raise ValueError(f"n_crit must rise from least to largest; it is {low:g} and {high:g}")
 

@@ -60,6 +60,7 @@ examples:
   propmdao analyze apcsf_11x4.7 --rpm 4200 --speed 8 --level --hemisphere 20 10 --figures results
   propmdao analyze apcsf_11x4.7 --rpm 4200 --n-crit 9
   propmdao analyze apcsf_11x4.7 --rpm 4200 --trip-upper 0.05 --trip-lower 0.05
+  propmdao analyze my_blade.toml --rpm 6000 --elastic --youngs-modulus 11e9 --material-density 1700
   propmdao analyze my_blade.toml --rpm 4200 --polar sg6042 sg6042_re50k.txt sg6042_re100k.txt
 
 CT = T/(rho n^2 D^4), CQ = Q/(rho n^2 D^5), CP = 2 pi CQ, J = V/(n D), eta = J CT/CP, n in rev/s.
@@ -80,6 +81,10 @@ ASKED_OPTIONS = (
     "trip_upper",
     "trip_lower",
     "measured_drag",
+    "elastic",
+    "youngs_modulus",
+    "shear_modulus",
+    "material_density",
 )
 
 
@@ -115,7 +120,7 @@ def add_analyze(commands: argparse._SubParsersAction[Any]) -> None:
         "--band",
         action="store_true",
         help="what inputs that are not known for sure do to thrust or rpm, power and the tone at"
-        " blade passage: blade angle +-1 deg, chord +-3 %%, n_crit 3 to 9, section drag +-20 %%;"
+        " blade passage: blade angle +-1 deg, chord +-3 %%, n_crit 3 to 9, section drag +-17 %%;"
         " eight solutions more",
     )
     command.add_argument("--json", action="store_true", help="print JSON instead of tables")

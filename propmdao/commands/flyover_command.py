@@ -27,7 +27,7 @@ from propmdao.commands.warning_lines import warning_lines
 from propmdao.runtime.output_files import replacing
 
 if TYPE_CHECKING:
-    from propmdao.analysis.flyover_results import Flyover
+    from propmdao.analysis.flights.flyover_results import Flyover
 
 DESCRIPTION = """\
 What a microphone on the ground hears of a propeller in level flight, its axis along the path:
@@ -125,7 +125,7 @@ def _flyover(options: argparse.Namespace) -> None:
     air = air_of(options)
     asked = asked_of(options) | air | {"broadband": True}
     # Slow to import, so only once the arguments are known to be good.
-    from propmdao.analysis.flyover_results import Flight
+    from propmdao.analysis.flights.flyover_results import Flight
     from propmdao.analysis.request import Request
     from propmdao.analysis.sounds import require_sound
     from propmdao.formats.propellers import load_propeller
@@ -143,7 +143,7 @@ def _flyover(options: argparse.Namespace) -> None:
     Request.of(**asked)
     if options.figures is not None:
         require_matplotlib("--figures")
-    from propmdao.analysis.flyovers import fly_over
+    from propmdao.analysis.flights.flyovers import fly_over
     from propmdao.analysis.single_point import analyze
 
     with warning_lines("flyover"):
@@ -186,7 +186,7 @@ def _write(options: argparse.Namespace, flyover: Flyover, nearest: float) -> dic
         sound = write_wav(options.wav, flyover.pressure, full_scale)
         written["sound"] = sound._asdict() | {"path": str(sound.path)}
     if options.figures is not None:
-        from propmdao.analysis.flyover_results import STEP
+        from propmdao.analysis.flights.flyover_results import STEP
         from propmdao.figures.histories import level_history
 
         label = f"A-weighted level of {STEP:g} s, dB re 20 µPa"

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from typing import Any
 
+import numpy as np
 from rich import box
 from rich.console import Console
 from rich.table import Table
@@ -20,6 +21,7 @@ BAND = (
     "First line: with the input at its upper end, second: at its lower end. Band: root of the sum"
     " of their squares, what raises a number apart from what lowers it."
 )
+_TWIST_AT = 0.75  # r/R at which an elastic blade's twist is told
 TONES_ONLY = "Tones only: with broadband noise (--broadband) it is louder, above all in dBA."
 
 # Results of a band: label, formats of the number and of its changes.
@@ -270,8 +272,16 @@ def _operating_points(analyses: Sequence[dict[str, Any]]) -> Table:
         columns["figure_of_merit"] = ("figure\nof merit", ".3f")
     for heading, _ in columns.values():
         table.add_column(heading, justify="right")
+    gives = analyses[0]["deflection"] is not None
+    if gives:
+        table.add_column(f"twist at\n{_TWIST_AT} R\ndeg", justify="right")
     for analysis in analyses:
-        table.add_row(*(_format(analysis[key], form) for key, (_, form) in columns.items()))
+        row = [_format(analysis[key], form) for key, (_, form) in columns.items()]
+        if gives:
+            deflection = analysis["deflection"]
+            twist = np.interp(_TWIST_AT, deflection["r_over_R"], deflection["twist_deg"])
+            row.append(f"{twist:+.2f}")
+        table.add_row(*row)
     return table
 
 

@@ -21,7 +21,7 @@ from propmdao.formats.blade_tables.stated_units import (
 )
 from propmdao.propeller.airfoils.library import COORDINATE_ENDINGS
 from propmdao.propeller.checks import PropellerError
-from propmdao.propeller.description import DISTRIBUTIONS, TRANSITION, Propeller
+from propmdao.propeller.description import DISTRIBUTIONS, MATERIAL, TRANSITION, Propeller
 from propmdao.runtime.input_files import read_text
 from propmdao.runtime.output_files import replacing
 
@@ -85,7 +85,7 @@ def write_toml(path: str | os.PathLike[str], propeller: Propeller) -> int:
         if values is None or (key in ("sweep_over_R", "rake_over_R") and not values.any()):
             continue
         lines.append(f"{key} = [{', '.join(repr(float(value)) for value in values)}]")
-    for key in TRANSITION:
+    for key in (*TRANSITION, *MATERIAL):
         if (value := getattr(propeller, key)) is not None:
             lines.append(f"{key} = {value!r}")
     tables = []

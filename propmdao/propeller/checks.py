@@ -28,6 +28,8 @@ OFFSET = Range(-10.0, 10.0)
 THICKNESS = Range(1e-4, 0.999)
 #: Maximum camber over chord.
 CAMBER = Range(-0.5, 0.5)
+#: Cross-section over the chord squared.
+AREA = Range(1e-5, 10.0)
 
 
 class PropellerError(ValueError):

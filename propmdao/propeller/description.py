@@ -29,11 +29,14 @@ DISTRIBUTIONS = (
     "sweep_over_R",
     "rake_over_R",
     "camber_over_chord",
+    "area_over_c2",
 )
 #: Those of them that follow from the airfoils where they are not described.
-_OF_AIRFOILS = ("thickness_over_chord", "camber_over_chord")
+_OF_AIRFOILS = ("thickness_over_chord", "camber_over_chord", "area_over_c2")
 #: Transition of the boundary layers, optional numbers of a propeller's file.
 TRANSITION = ("n_crit", "trip_upper", "trip_lower")
+#: Material of a propeller, none of which need be known.
+MATERIAL = ("youngs_modulus", "shear_modulus", "material_density")
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
@@ -68,11 +71,18 @@ class Propeller:
         default.
     camber_over_chord : (n_stations,) array, optional
         Maximum camber over chord, to which the camber line is scaled; the airfoils' own by default.
+    area_over_c2 : (n_stations,) array, optional
+        Cross-section of the solid blade over the chord squared, for elastic blades; by default that
+        of the airfoils at their thickness. Roots that run into a hub have more.
     source : str
         Origin of the numbers.
     n_crit, trip_upper, trip_lower : float, optional
         Transition of its boundary layers, as `propmdao.records.models.Transition` has it; None, the
         default, says nothing about it. An analysis may ask for another one.
+    youngs_modulus, shear_modulus : float, optional
+        Stiffness of the blade's material in tension and in shear [Pa], for elastic blades.
+    material_density : float, optional
+        Density of the blade's material [kg/m^3].
 
     Raises
     ------
@@ -91,10 +101,14 @@ class Propeller:
     sweep_over_R: FloatArray = dataclasses.field(default_factory=lambda: np.zeros(()))
     rake_over_R: FloatArray = dataclasses.field(default_factory=lambda: np.zeros(()))
     camber_over_chord: FloatArray | None = None
+    area_over_c2: FloatArray | None = None
     source: str = ""
     n_crit: float | None = None
     trip_upper: float | None = None
     trip_lower: float | None = None
+    youngs_modulus: float | None = None
+    shear_modulus: float | None = None
+    material_density: float | None = None
 
     def __post_init__(self) -> None:
         for key in ("name", "source"):
@@ -106,6 +120,10 @@ class Propeller:
         if not isinstance(self.n_blades, int | np.integer) or isinstance(self.n_blades, bool):
             raise PropellerError(f"n_blades must be a whole number; it is {self.n_blades!r}")
         require_asked("n_blades", self.n_blades, PropellerError)
+        for key in (*TRANSITION, *MATERIAL):
+            if (value := getattr(self, key)) is not None:
+                object.__setattr__(self, key, checks.number(key, value))
+                require_asked(key, value, PropellerError)
 
         r = checks.stations(self.r_over_R)
         object.__setattr__(self, "r_over_R", r)
@@ -125,11 +143,9 @@ class Propeller:
             checks.require_within("thickness_over_chord", checks.THICKNESS, thickness, r)
         if self.camber_over_chord is not None:
             checks.require_within("camber_over_chord", checks.CAMBER, self.camber_over_chord, r)
+        if self.area_over_c2 is not None:
+            checks.require_within("area_over_c2", checks.AREA, self.area_over_c2, r)
         object.__setattr__(self, "airfoils", checks.airfoil_pairs(self.airfoils))
-        for key in TRANSITION:
-            if (value := getattr(self, key)) is not None:
-                object.__setattr__(self, key, checks.number(key, value))
-                require_asked(key, value, PropellerError)
 
     def __setstate__(self, state: dict[str, Any]) -> None:
         """Make arrays read-only again, which pickling forgets."""

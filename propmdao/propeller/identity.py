@@ -6,7 +6,7 @@ import dataclasses
 import json
 import zlib
 
-from propmdao.propeller.description import TRANSITION, Propeller
+from propmdao.propeller.description import Propeller
 
 
 def checksum(propeller: Propeller) -> str:
@@ -23,7 +23,7 @@ def checksum(propeller: Propeller) -> str:
         Eight hexadecimal digits.
     """
     fields = dataclasses.asdict(propeller)
-    # A description that says nothing of transition has the checksum that it had before it could.
-    said = {k: value for k, value in fields.items() if k not in TRANSITION or value is not None}
+    # A description has the checksum that it had before it could say more.
+    said = {k: v for k, v in fields.items() if k == "thickness_over_chord" or v is not None}
     description = json.dumps(said, default=lambda array: array.tolist())
     return f"{zlib.crc32(description.encode()):08x}"

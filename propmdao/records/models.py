@@ -109,6 +109,34 @@ class Transition:
 
 
 @dataclasses.dataclass(frozen=True)
+class ElasticModel:
+    """Material of a blade that gives under its loads, where it is not that of the propeller's file.
+
+    Attributes
+    ----------
+    youngs_modulus, shear_modulus : float or None
+        Stiffness in tension and in shear [Pa]; None: the propeller's.
+    material_density : float or None
+        Mass per volume [kg/m^3]; None: the propeller's.
+
+    Raises
+    ------
+    ValueError
+        If a value is out of range.
+    """
+
+    youngs_modulus: float | None = None
+    shear_modulus: float | None = None
+    material_density: float | None = None
+
+    def __post_init__(self) -> None:
+        """Refuse what no material has."""
+        for field in dataclasses.fields(self):
+            if (value := getattr(self, field.name)) is not None:
+                require_asked(field.name, value)
+
+
+@dataclasses.dataclass(frozen=True)
 class LoadModel:
     """How the loads are computed.
 
@@ -126,6 +154,13 @@ class LoadModel:
     measured_drag : bool
         Whether the drag of the catalogue's and of NeuralFoil's polars is brought to the level that
         wind tunnels measure at equal lift; False leaves it as computed.
+    elastic : ElasticModel or None
+        Blade that twists and bends under its loads; None (default) is a rigid one.
+
+    Raises
+    ------
+    ValueError
+        If an elastic blade is to be loaded by inviscid flow.
     """
 
     viscous: bool = True
@@ -133,6 +168,14 @@ class LoadModel:
     wake: WakeLaw = dataclasses.field(default_factory=WakeLaw)
     transition: Transition = Transition()
     measured_drag: bool = True
+    elastic: ElasticModel | None = None
+
+    def __post_init__(self) -> None:
+        """Refuse an elastic blade without the moments of its sections."""
+        if self.elastic is not None and not self.viscous:
+            raise ValueError(
+                "an elastic blade needs the moments of its sections, which inviscid flow has not"
+            )
 
 
 @dataclasses.dataclass(frozen=True)

@@ -16,6 +16,7 @@ from typing import Any
 POINT, AIR, CHANGE = "point", "point.air", "change"
 LOADS, SELF_NOISE, FIDELITY = "model.loads", "model.noise.broadband", "model.fidelity"
 TRANSITION = "model.loads.transition"
+ELASTIC = "model.loads.elastic"
 
 
 @dataclasses.dataclass(frozen=True)
@@ -228,6 +229,31 @@ _ASKED = (
         per_node=False, option="--computed-drag",
         help="leave the drag of the catalogue's and NeuralFoil's polars as computed; by default it"
         " is brought to the level that wind tunnels measure",
+    ),
+    Quantity(
+        "elastic", "", "blade that twists and bends under centrifugal and air loads", LOADS, False,
+        per_node=False, option="--elastic",
+        help="let the blade twist and bend under centrifugal and air loads; needs its material, in"
+        " the propeller file or by the options below",
+    ),
+    Quantity(
+        "youngs_modulus", "Pa", "Young's modulus of the blade", ELASTIC, per_node=False,
+        option="--youngs-modulus", placeholder="PA",
+        help="Young's modulus of the elastic blade [Pa]; default the propeller file's",
+        allowed=Range(1e6, 1e13, "Pa"),
+    ),
+    Quantity(
+        "shear_modulus", "Pa", "shear modulus of the blade, by default Young's over 2.7", ELASTIC,
+        per_node=False, option="--shear-modulus", placeholder="PA",
+        help="shear modulus of the elastic blade [Pa]; default the propeller file's, or Young's"
+        " over 2.7 (Poisson's ratio 0.35)",
+        allowed=Range(1e5, 1e13, "Pa"),
+    ),
+    Quantity(
+        "material_density", "kg/m**3", "density of the blade", ELASTIC, per_node=False,
+        option="--material-density", placeholder="KG_M3",
+        help="density of the elastic blade [kg/m3]; default the propeller file's",
+        allowed=Range(1.0, 25000.0, "kg/m3"),
     ),
     Quantity(
         "broadband", "", "broadband self-noise beside the tones", "model.noise", False,

@@ -19,7 +19,7 @@ import propmdao as pm
 from propmdao.acoustics.kinematics.motion import poses
 from propmdao.acoustics.kinematics.observers import directions, sphere
 from propmdao.acoustics.kinematics.tracks import flyover_track
-from propmdao.analysis.flyover_results import STEP
+from propmdao.analysis.flights.flyover_results import STEP
 from propmdao.figures.directivity import hemisphere_map
 from propmdao.figures.histories import level_history
 from propmdao.figures.of_analysis import analysis_sound

@@ -31,7 +31,7 @@ from propmdao.aerodynamics.sections.polars.measured_drag import (
 )
 from propmdao.aerodynamics.sections.polars.neuralfoil_tables import (
     neuralfoil_installed,
-    neuralfoil_polar,
+    neuralfoil_polars,
 )
 from propmdao.propeller.airfoils.airfoil import Airfoil, naca4
 from propmdao.propeller.airfoils.contours import AirfoilFrameWarning
@@ -147,14 +147,14 @@ class Computed:
             airfoil, re = airfoil_of(section), np.unique(points.re[points.section == section])
             made.thickness[section], made.reynolds[section] = airfoil.max_thickness, re
             for n_crit, kept in ((N_CRIT, made.at_5), (TUNNEL_N_CRIT, made.in_tunnel)):
-                polar = neuralfoil_polar(
-                    airfoil.camber,
-                    airfoil.thickness,
+                polar = neuralfoil_polars(
+                    airfoil.camber[None],
+                    airfoil.thickness[None],
                     ATTACHED_DEG,
                     re,
                     Transition(n_crit).completed(),
                 )
-                kept[section] = np.stack(polar[:3])
+                kept[section] = np.concatenate(polar[:3])
         return made
 
     def at_level(self, level: tuple[float, float] = TUNNEL_LEVEL) -> dict[str, np.ndarray]:

@@ -13,8 +13,9 @@ import numpy as np
 import pytest
 
 from propmdao.acoustics.kinematics.observers import arc
-from propmdao.analysis import flyovers, single_point
-from propmdao.analysis.flyover_results import Flight
+from propmdao.analysis import single_point
+from propmdao.analysis.flights import flyovers
+from propmdao.analysis.flights.flyover_results import Flight
 from propmdao.analysis.single_point import analyze
 from propmdao.analysis.sweeps import sweep
 from propmdao.analysis.wopwop import foreign_case

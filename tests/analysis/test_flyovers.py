@@ -11,8 +11,8 @@ from propmdao.acoustics.kinematics.observers import arc, point
 from propmdao.acoustics.levels.decibels import oaspl_db
 from propmdao.acoustics.levels.time_levels import a_weighted, short_time_level_db
 from propmdao.acoustics.sounds.recordings import SAMPLE_RATE
-from propmdao.analysis.flyover_results import STEP, Flight
-from propmdao.analysis.flyovers import fly_over
+from propmdao.analysis.flights.flyover_results import STEP, Flight
+from propmdao.analysis.flights.flyovers import fly_over
 from propmdao.analysis.single_point import analyze
 from propmdao.formats.propellers import load_propeller
 from propmdao.propeller.changes import Change

@@ -45,6 +45,9 @@ class Answer:
             "figure_of_merit": 0.5,
             "converged": True,
             "failure": None,
+            "deflection": None
+            if asked.model.loads.elastic is None
+            else {"r_over_R": [0.2, 1.0], "twist_deg": [0.0, 0.8]},
             "observers": [
                 {"elevation_deg": elevation, "azimuth_deg": azimuth, "radius": radius, **levels}
                 | {"oaspl_thickness_db": -200.0, "harmonics": [], "third_octave": []}

@@ -22,7 +22,14 @@ from propmdao.commands.program import main
 from propmdao.propeller.changes import Change
 from propmdao.records.air import Air
 from propmdao.records.listening import Surroundings
-from propmdao.records.models import LoadModel, Model, NoiseModel, SelfNoiseModel, Transition
+from propmdao.records.models import (
+    ElasticModel,
+    LoadModel,
+    Model,
+    NoiseModel,
+    SelfNoiseModel,
+    Transition,
+)
 from propmdao.records.states import OperatingPoint
 
 PROPELLER = "apcsf_11x4.7"
@@ -264,7 +271,7 @@ def test_keys_are_those_promised() -> None:
     point = json.loads(result.stdout)
     assert list(point) == (
         "propeller point change model listening polars rpm speed rho J thrust torque shaft_power"
-        " CT CQ CP eta figure_of_merit converged failure observers".split()
+        " CT CQ CP eta figure_of_merit converged failure deflection observers".split()
     )
     assert set(point["propeller"]) == {"name", "diameter", "n_blades", "checksum", "source"}
     assert set(point["point"]) == {"rpm", "thrust", "speed", "air"}
@@ -274,7 +281,7 @@ def test_keys_are_those_promised() -> None:
     assert set(point["change"]) == {"twist_offset_deg", "chord_factor", "diameter", "n_blades"}
     assert set(point["model"]) == {"loads", "noise", "fidelity"}
     assert set(point["model"]["loads"]) == set(
-        "viscous stall_delay wake transition measured_drag".split()
+        "viscous stall_delay wake transition measured_drag elastic".split()
     )
     assert set(point["listening"]) == {"observers", "surroundings", "groups"}
     assert set(point["polars"]) == {"e63", "naca4412"}
@@ -325,6 +332,32 @@ def test_what_the_physics_refuses_is_one_line(
     assert message in refused("analyze", PROPELLER, *arguments.split())
 
 
+def test_an_elastic_blade_is_asked_for_and_its_twist_is_shown(
+    recorder: Any, capsys: pytest.CaptureFixture[str]
+) -> None:
+    arguments = f"analyze {PROPELLER} --rpm 4000 --elastic --youngs-modulus 11e9"
+    assert main(arguments.split()) == 0
+    shown = capsys.readouterr().out
+    assert "0.75 R" in shown and "+0.55" in shown
+    assert recorder.asked[-1].model.loads.elastic == ElasticModel(youngs_modulus=11e9)
+    assert main(f"analyze {PROPELLER} --rpm 4000".split()) == 0
+    assert "0.75 R" not in capsys.readouterr().out
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        ("--shear-modulus 4e9", "shear_modulus is about an elastic blade: ask for elastic, too"),
+        ("--elastic --inviscid", "needs the moments of its sections, which inviscid flow has not"),
+        ("--elastic --youngs-modulus 11", "youngs_modulus must be within 1000000 ..."),
+    ],
+)
+def test_what_an_elastic_blade_cannot_be_is_refused(
+    refused: Callable[..., str], arguments: str, message: str
+) -> None:
+    assert message in refused("analyze", PROPELLER, "--rpm", "4000", *arguments.split())
+
+
 def test_help_explains_every_option(capsys: pytest.CaptureFixture[str]) -> None:
     with pytest.raises(SystemExit) as exit_:
         main(["analyze", "--help"])
@@ -332,6 +365,7 @@ def test_help_explains_every_option(capsys: pytest.CaptureFixture[str]) -> None:
     text = capsys.readouterr().out
     options = "--rpm --thrust --speed --rho --twist-offset --inviscid --no-stall-delay --polar"
     options += " --n-crit --trip-upper --trip-lower"
+    options += " --elastic --youngs-modulus --shear-modulus --material-density"
     options += " --arc --point --circle --hemisphere --grid --ground --level --absorption"
     options += " --broadband --trip --band --wav --seconds --full-scale --figures --figure-at"
     options += " --figure-dba --json"

@@ -11,7 +11,13 @@ import pytest
 from propmdao.propeller.changes import Change
 from propmdao.records.air import Air
 from propmdao.records.listening import Listening
-from propmdao.records.models import LoadModel, NoiseModel, SelfNoiseModel, Transition
+from propmdao.records.models import (
+    ElasticModel,
+    LoadModel,
+    NoiseModel,
+    SelfNoiseModel,
+    Transition,
+)
 from propmdao.records.quantities import (
     ASKED,
     BROADBAND_LEVELS,
@@ -30,6 +36,7 @@ RECORDS = {
     "change": Change,
     "model.loads": LoadModel,
     "model.loads.transition": Transition,
+    "model.loads.elastic": ElasticModel,
     "model.noise": NoiseModel,
     "model.noise.broadband": SelfNoiseModel,
     "listening": Listening,
@@ -55,7 +62,7 @@ def test_names_options_and_keys_are_unique():
 def test_what_may_be_asked_is_a_field_of_its_record_with_the_same_default(quantity: Quantity):
     fields = {field.name: field for field in dataclasses.fields(RECORDS[quantity.record])}
     default = fields[quantity.name].default
-    if quantity.name == "broadband":  # a switch here, a model or none there
+    if quantity.name in ("broadband", "elastic"):  # a switch here, a model or none there
         assert quantity.default is False and default is None
     else:
         assert quantity.default == default

@@ -16,7 +16,7 @@ from propmdao.acoustics.sounds.changing_sound import absorbed_record, changing_n
 from propmdao.acoustics.sounds.recordings import MOST_SAMPLES, SAMPLE_RATE
 from propmdao.acoustics.sources.flyover import flyover_histories
 from propmdao.acoustics.sources.rotors import Rotor, equally_spaced
-from propmdao.analysis.flyover_results import STEP, Flight, Flyover
+from propmdao.analysis.flights.flyover_results import STEP, Flight, Flyover
 from propmdao.analysis.results import Analysis
 from propmdao.analysis.self_noise import BANDS_HZ, strip_flow
 from propmdao.geometry.blade import Blade

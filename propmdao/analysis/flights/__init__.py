@@ -1,0 +1,1 @@
+"""Flights over an observer: what is heard, second by second, and what it adds up to."""
