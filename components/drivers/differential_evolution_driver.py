@@ -37,6 +37,7 @@ from propmdao.components.drivers.search_options import (
 )
 from propmdao.runtime.locks import locked
 from propmdao.runtime.output_files import make_folder, require_writable
+from propmdao.runtime.terminal import print_line
 from propmdao.runtime.worker_processes import WorkerLostError
 
 SMALLEST_POPULATION = 5  # what strategies with two differences draw from
@@ -72,7 +73,7 @@ class DifferentialEvolutionDriver(Driver):
       if the model computes the same numbers on one thread as on several. Each worker has one; an
       executor of your own needs `runtime.worker_processes.use_one_thread` as its initializer.
     - With ``design_time_limit`` a process that takes longer over a design is ended and replaced;
-      the design has failed.
+      the design has failed. So has one whose process dies.
     - With ``designs_at_once`` the components of this package evaluate so many designs in one
       compiled call, which is what an accelerator is for; on two cores eight are a third faster than
       one after the other and workers twice as fast. A blade takes some 20 MB. Other components,
@@ -226,7 +227,7 @@ class DifferentialEvolutionDriver(Driver):
         self.fail = not best.feasible
         self.message = search.summary(ending)
         if self.options["disp"]:
-            print(f"{self._get_name()}: {self.message}")
+            print_line(f"{self._get_name()}: {self.message}")
         return self.fail
 
     def _initial_population(self, rng: np.random.Generator) -> Array:

@@ -29,6 +29,8 @@ from propmdao.analysis.wind_tunnel import (
     read_wind_tunnel,
 )
 from propmdao.figures import comparisons
+from propmdao.figures.style import save
+from propmdao.runtime.output_files import replacing
 
 MEASUREMENTS = Path(__file__).parent / "measurements"
 # Propellers of the catalogue, and the files of their measurements.
@@ -127,7 +129,7 @@ def summary(columns: Iterable[Column]) -> list[dict[str, str | float]]:
 
 def write_csv(file: Path, rows: Sequence[Mapping[str, object]]) -> None:
     """Write a table; the first row has all columns."""
-    with file.open("w", newline="", encoding="utf-8") as stream:
+    with replacing(file) as beside, beside.open("w", newline="", encoding="utf-8") as stream:
         writer = csv.DictWriter(stream, list(rows[0]))
         writer.writeheader()
         writer.writerows(rows)
@@ -181,10 +183,10 @@ def main() -> None:
         write_points(output / f"{case}.csv", tunnel, columns)
         names = [f"{case}, {column.name} ({column.twist_deg:+.2f} deg)" for column in columns]
         moving = {name: column.dynamic for name, column in zip(names, columns, strict=True)}
-        comparisons.performance(tunnel.dynamic, moving).savefig(output / f"{case}.png")
+        save(comparisons.performance(tunnel.dynamic, moving), output / f"{case}.png")
         still = {name: column.static for name, column in zip(names, columns, strict=True)}
         figure = comparisons.static_performance(tunnel.static, still)
-        figure.savefig(output / f"{case}_static.png")
+        save(figure, output / f"{case}_static.png")
     table = summary(all_columns)
     write_csv(output / "summary.csv", table)
     # 80 characters have no room for the points beyond J 0.5.
