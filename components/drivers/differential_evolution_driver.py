@@ -29,6 +29,7 @@ from propmdao.components.drivers.evaluation.model_runner import (
     declare_runner_options,
     model_runner,
 )
+from propmdao.components.drivers.gradient_polish import polish
 from propmdao.components.drivers.progress import declare_progress, progress_bar
 from propmdao.components.drivers.search_options import (
     SAMPLERS,
@@ -58,6 +59,10 @@ class DifferentialEvolutionDriver(Driver):
       ``equality_tolerance``. Violations are compared in driver scaling (``ref``, ``scaler``).
     - Equalities are loose at first and tighten to that tolerance within 60 % of ``max_gen``
       generations (Takahama and Sakai 2006), before which the search does not end as converged.
+    - With ``polish`` SLSQP goes on from the best design with the model's total derivatives, for one
+      more run of the model in this process each. It meets several equalities, which evolution alone
+      misses; its designs count, are recorded and are in the checkpoint as the others. A search that
+      is ended by its time budget is not polished.
     - A design whose analysis raises ``om.AnalysisError``, or whose objective or constraints are
       not finite, loses against every other and the search goes on. Any other exception is an
       error in the model and ends the run.
@@ -176,6 +181,11 @@ class DifferentialEvolutionDriver(Driver):
         self._check_for_invalid_desvar_values()
         if not self._designvars:
             raise RuntimeError(f"{self.msginfo} needs a design variable; the model has none")
+        if self.options["polish"] and self.options["design_time_limit"] is not None:
+            raise ValueError(
+                f"{self.msginfo}: polish runs the model in this process, where design_time_limit"
+                " ends nothing; give one of the two"
+            )
         self._design_problem = DesignProblem(self, self.options["equality_tolerance"])
         if self.options["best_file"] is not None:
             require_writable(self._output_file("best_file"))
@@ -205,13 +215,14 @@ class DifferentialEvolutionDriver(Driver):
             free = self._design_problem.upper > self._design_problem.lower
             passed_on = ("strategy", "mutation", "recombination", "tol")
             try:
-                best, ending = search.run(
+                _, ending = search.run(
                     population,
                     self.options["max_gen"],
                     bounds=[(0.0, float(is_free)) for is_free in free],
                     rng=rng,
                     **{name: self.options[name] for name in passed_on},
                 )
+                ending = self._polished(search, ending)
             except (KeyboardInterrupt, WorkerLostError) as error:
                 if search.best is not None:
                     self._run_here(search.best.design, ModelRunner(self))
@@ -221,6 +232,8 @@ class DifferentialEvolutionDriver(Driver):
                         f" '{self._checkpoint.path}': run again to go on from there."
                     )
                 raise
+        best = search.best
+        assert best is not None
         # Not here, where nothing would end a design that took too long: they may all have.
         limited = self.options["design_time_limit"] is not None
         self._run_here(best.design, self._runner if limited else ModelRunner(self))
@@ -229,6 +242,16 @@ class DifferentialEvolutionDriver(Driver):
         if self.options["disp"]:
             print_line(f"{self._get_name()}: {self.message}")
         return self.fail
+
+    def _polished(self, search: ConstrainedSearch, ending: str) -> str:
+        """Polish the best design of a search that has come to its end; how it ended then."""
+        best = search.best
+        if not self.options["polish"] or search.stopped or best is None or best.failure:
+            return ending
+        begun = search.evaluations
+        with contextlib.suppress(SearchStopped):
+            polish(self, self._design_problem, search.trial, best)
+        return f"{ending} and polished by {search.evaluations - begun} designs"
 
     def _initial_population(self, rng: np.random.Generator) -> Array:
         """Return positions in the unit cube (pop_size, n_variables), the current design first."""
@@ -250,11 +273,13 @@ class DifferentialEvolutionDriver(Driver):
 
     def _open_checkpoint(self, file: Path) -> Checkpoint:
         # When to stop is no part of it: a search may be resumed with more generations, unless they
-        # determine how fast the slack of its equalities shrinks.
+        # determine how fast the slack of its equalities shrinks or when the polishing begins.
         options = ("seed", "strategy", "init", "mutation", "recombination", "equality_tolerance")
         search = {name: self.options[name] for name in options}
-        if self._design_problem.equalities().any():
+        if self._design_problem.equalities().any() or self.options["polish"]:
             search["max_gen"] = self.options["max_gen"]
+        if self.options["polish"]:
+            search["polish"] = True
         search |= {"pop_size": self._population_size(), **self._design_problem.description()}
         checkpoint = Checkpoint(file, search)
         entry = checkpoint.first_success()

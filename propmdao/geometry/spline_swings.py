@@ -41,8 +41,10 @@ def warn_of_swings(r_over_R: npt.ArrayLike, chord_over_R: npt.ArrayLike, radius:
     chord = CubicSpline(stations, chords)(between)
     smaller = np.minimum(chords[:-1], chords[1:])[:, None]
     larger = np.maximum(chords[:-1], chords[1:])[:, None]
-    # A chord at or below zero swings furthest of all.
-    swing = np.maximum(smaller / np.maximum(chord, 1e-9), chord / larger)
+    # A chord below zero swings the further, the deeper it is.
+    tiny = chord < 1e-3 * smaller
+    below = np.where(tiny, 1e3 * (1.0 - chord / smaller), smaller / np.where(tiny, smaller, chord))
+    swing = np.maximum(below, chord / larger)
     if swing.max(initial=0.0) <= SWING:
         return
     interval, place = np.unravel_index(int(swing.argmax()), swing.shape)
