@@ -15,12 +15,6 @@ from openmdao.core.driver import Driver, RecordingDebugging
 
 from propmdao.components.drivers.best_design_file import write_best_design
 from propmdao.components.drivers.checkpoint import Checkpoint
-from propmdao.components.drivers.constrained_search import (
-    ConstrainedSearch,
-    Generation,
-    SearchStopped,
-)
-from propmdao.components.drivers.equality_slack import EqualitySlack
 from propmdao.components.drivers.evaluation.candidate import Array, Candidate
 from propmdao.components.drivers.evaluation.design_problem import DesignProblem, require_bounds
 from propmdao.components.drivers.evaluation.model_run import ModelRun, put_outputs
@@ -29,7 +23,13 @@ from propmdao.components.drivers.evaluation.model_runner import (
     declare_runner_options,
     model_runner,
 )
-from propmdao.components.drivers.gradient_polish import polish
+from propmdao.components.drivers.evolution.constrained_search import (
+    ConstrainedSearch,
+    Generation,
+    SearchStopped,
+)
+from propmdao.components.drivers.evolution.equality_slack import EqualitySlack
+from propmdao.components.drivers.evolution.gradient_polish import polish
 from propmdao.components.drivers.progress import declare_progress, progress_bar
 from propmdao.components.drivers.search_options import (
     SAMPLERS,

@@ -194,8 +194,8 @@ def require_reached(
 
 def _thrust_in_words(solver: Solver, case: RotorCase, rotation_speed: np.float64) -> str:
     thrust = float(solver.solve(case.turning(rotation_speed)).thrust)
-    found = f"{thrust:.4g} N" if np.isfinite(thrust) else "no solution"
-    return f"{found} at {float(rotation_speed) / RAD_PER_S:g} rpm"
+    words = f"{thrust:.4g} N" if np.isfinite(thrust) else "no solution"
+    return f"{words} at {float(rotation_speed) / RAD_PER_S:g} rpm"
 
 
 def rotation_speed_by_interpolation(

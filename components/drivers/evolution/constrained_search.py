@@ -10,9 +10,9 @@ import numpy as np
 from scipy.optimize import NonlinearConstraint, OptimizeResult, differential_evolution
 from tqdm import tqdm
 
-from propmdao.components.drivers.equality_slack import EqualitySlack
 from propmdao.components.drivers.evaluation.candidate import Array, Candidate
 from propmdao.components.drivers.evaluation.failure_reasons import FailureReasons
+from propmdao.components.drivers.evolution.equality_slack import EqualitySlack
 
 
 @dataclasses.dataclass(frozen=True)

@@ -44,7 +44,7 @@ def polish(
     driver : Driver
         Driver of a Problem whose model has derivatives.
     problem : DesignProblem
-        Its model as a function of a design.
+        The model of the driver as a function of a design.
     evaluate : callable
         Function that evaluates a position (n_variables,) in the unit cube between the bounds, and
         leaves the model there.
