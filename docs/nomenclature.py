@@ -1,12 +1,13 @@
 """Write the nomenclature of docs/conventions.md from the table of quantities."""
 
+import dataclasses
 import re
 from pathlib import Path
 
-from propmdao.records.quantities import ASKED, BROADBAND_LEVELS, LEVELS, RESULTS, Quantity
+from propmdao.records.quantities import ASKED, BROADBAND_LEVELS, LEVELS, RESULTS, Quantity, Range
 
 PAGE = Path(__file__).with_name("conventions.md")
-HEADS = ("name", "unit", "default", "meaning", "JSON, column", "component", "option")
+HEADS = ("name", "unit", "default", "range", "meaning", "JSON, column", "component", "option")
 
 
 def table() -> str:
@@ -35,10 +36,18 @@ def _row(quantity: Quantity) -> tuple[str, ...]:
         f"`{quantity.name}`",
         quantity.unit,
         default,
+        _range(quantity.allowed),
         quantity.meaning,
         f"`{quantity.json}`" if quantity.json != quantity.name else "",
         f"`{quantity.variable}`" if quantity.variable != quantity.name else "",
         f"`{quantity.option}`" if quantity.option else "",
+    )
+
+
+def _range(allowed: Range | None) -> str:
+    """Range of a number; its unit has a column of its own, as OpenMDAO writes it."""
+    return (
+        "" if allowed is None else str(dataclasses.replace(allowed, unit="")).replace("within ", "")
     )
 
 

@@ -15,12 +15,6 @@ from openmdao.core.driver import Driver, RecordingDebugging
 
 from propmdao.components.drivers.best_design_file import write_best_design
 from propmdao.components.drivers.checkpoint import Checkpoint
-from propmdao.components.drivers.constrained_search import (
-    ConstrainedSearch,
-    Generation,
-    SearchStopped,
-)
-from propmdao.components.drivers.equality_slack import EqualitySlack
 from propmdao.components.drivers.evaluation.candidate import Array, Candidate
 from propmdao.components.drivers.evaluation.design_problem import DesignProblem, require_bounds
 from propmdao.components.drivers.evaluation.model_run import ModelRun, put_outputs
@@ -29,6 +23,13 @@ from propmdao.components.drivers.evaluation.model_runner import (
     declare_runner_options,
     model_runner,
 )
+from propmdao.components.drivers.evolution.constrained_search import (
+    ConstrainedSearch,
+    Generation,
+    SearchStopped,
+)
+from propmdao.components.drivers.evolution.equality_slack import EqualitySlack
+from propmdao.components.drivers.evolution.gradient_polish import polish
 from propmdao.components.drivers.progress import declare_progress, progress_bar
 from propmdao.components.drivers.search_options import (
     SAMPLERS,
@@ -37,6 +38,7 @@ from propmdao.components.drivers.search_options import (
 )
 from propmdao.runtime.locks import locked
 from propmdao.runtime.output_files import make_folder, require_writable
+from propmdao.runtime.terminal import print_line
 from propmdao.runtime.worker_processes import WorkerLostError
 
 SMALLEST_POPULATION = 5  # what strategies with two differences draw from
@@ -57,6 +59,10 @@ class DifferentialEvolutionDriver(Driver):
       ``equality_tolerance``. Violations are compared in driver scaling (``ref``, ``scaler``).
     - Equalities are loose at first and tighten to that tolerance within 60 % of ``max_gen``
       generations (Takahama and Sakai 2006), before which the search does not end as converged.
+    - With ``polish`` SLSQP goes on from the best design with the model's total derivatives, for one
+      more run of the model in this process each. It meets several equalities, which evolution alone
+      misses; its designs count, are recorded and are in the checkpoint as the others. A search that
+      is ended by its time budget is not polished.
     - A design whose analysis raises ``om.AnalysisError``, or whose objective or constraints are
       not finite, loses against every other and the search goes on. Any other exception is an
       error in the model and ends the run.
@@ -72,7 +78,7 @@ class DifferentialEvolutionDriver(Driver):
       if the model computes the same numbers on one thread as on several. Each worker has one; an
       executor of your own needs `runtime.worker_processes.use_one_thread` as its initializer.
     - With ``design_time_limit`` a process that takes longer over a design is ended and replaced;
-      the design has failed.
+      the design has failed. So has one whose process dies.
     - With ``designs_at_once`` the components of this package evaluate so many designs in one
       compiled call, which is what an accelerator is for; on two cores eight are a third faster than
       one after the other and workers twice as fast. A blade takes some 20 MB. Other components,
@@ -175,6 +181,11 @@ class DifferentialEvolutionDriver(Driver):
         self._check_for_invalid_desvar_values()
         if not self._designvars:
             raise RuntimeError(f"{self.msginfo} needs a design variable; the model has none")
+        if self.options["polish"] and self.options["design_time_limit"] is not None:
+            raise ValueError(
+                f"{self.msginfo}: polish runs the model in this process, where design_time_limit"
+                " ends nothing; give one of the two"
+            )
         self._design_problem = DesignProblem(self, self.options["equality_tolerance"])
         if self.options["best_file"] is not None:
             require_writable(self._output_file("best_file"))
@@ -204,13 +215,14 @@ class DifferentialEvolutionDriver(Driver):
             free = self._design_problem.upper > self._design_problem.lower
             passed_on = ("strategy", "mutation", "recombination", "tol")
             try:
-                best, ending = search.run(
+                _, ending = search.run(
                     population,
                     self.options["max_gen"],
                     bounds=[(0.0, float(is_free)) for is_free in free],
                     rng=rng,
                     **{name: self.options[name] for name in passed_on},
                 )
+                ending = self._polished(search, ending)
             except (KeyboardInterrupt, WorkerLostError) as error:
                 if search.best is not None:
                     self._run_here(search.best.design, ModelRunner(self))
@@ -220,14 +232,26 @@ class DifferentialEvolutionDriver(Driver):
                         f" '{self._checkpoint.path}': run again to go on from there."
                     )
                 raise
+        best = search.best
+        assert best is not None
         # Not here, where nothing would end a design that took too long: they may all have.
         limited = self.options["design_time_limit"] is not None
         self._run_here(best.design, self._runner if limited else ModelRunner(self))
         self.fail = not best.feasible
         self.message = search.summary(ending)
         if self.options["disp"]:
-            print(f"{self._get_name()}: {self.message}")
+            print_line(f"{self._get_name()}: {self.message}")
         return self.fail
+
+    def _polished(self, search: ConstrainedSearch, ending: str) -> str:
+        """Polish the best design of a search that has come to its end; how it ended then."""
+        best = search.best
+        if not self.options["polish"] or search.stopped or best is None or best.failure:
+            return ending
+        begun = search.evaluations
+        with contextlib.suppress(SearchStopped):
+            polish(self, self._design_problem, search.trial, best)
+        return f"{ending} and polished by {search.evaluations - begun} designs"
 
     def _initial_population(self, rng: np.random.Generator) -> Array:
         """Return positions in the unit cube (pop_size, n_variables), the current design first."""
@@ -249,11 +273,13 @@ class DifferentialEvolutionDriver(Driver):
 
     def _open_checkpoint(self, file: Path) -> Checkpoint:
         # When to stop is no part of it: a search may be resumed with more generations, unless they
-        # determine how fast the slack of its equalities shrinks.
+        # determine how fast the slack of its equalities shrinks or when the polishing begins.
         options = ("seed", "strategy", "init", "mutation", "recombination", "equality_tolerance")
         search = {name: self.options[name] for name in options}
-        if self._design_problem.equalities().any():
+        if self._design_problem.equalities().any() or self.options["polish"]:
             search["max_gen"] = self.options["max_gen"]
+        if self.options["polish"]:
+            search["polish"] = True
         search |= {"pop_size": self._population_size(), **self._design_problem.description()}
         checkpoint = Checkpoint(file, search)
         entry = checkpoint.first_success()

@@ -37,6 +37,12 @@ def declare_search_options(options: OptionsDictionary) -> None:
         "below tol times the magnitude of their mean.",
     )
     declare(
+        "polish",
+        False,
+        types=bool,
+        desc="Go on from the best design by SLSQP with the model's derivatives.",
+    )
+    declare(
         "time_budget",
         None,
         types=(int, float),

@@ -183,13 +183,19 @@ def require_reached(
     if at_low >= 0.0 >= at_high and np.isfinite(trimmed.rotation_speed):
         return
     ends = [
-        f"{float(solver.solve(case.turning(end)).thrust):.4g} N at {float(end) / RAD_PER_S:g} rpm"
+        _thrust_in_words(solver, case, end)
         for end in (np.float64(bounds.low), np.float64(bounds.high))  # one type, one program
     ]
     raise TrimError(
         f"thrust {float(thrust_required):g} N is out of reach at {float(case.state.speed):g} m/s: "
         + ", ".join(ends)
     )
+
+
+def _thrust_in_words(solver: Solver, case: RotorCase, rotation_speed: np.float64) -> str:
+    thrust = float(solver.solve(case.turning(rotation_speed)).thrust)
+    words = f"{thrust:.4g} N" if np.isfinite(thrust) else "no solution"
+    return f"{words} at {float(rotation_speed) / RAD_PER_S:g} rpm"
 
 
 def rotation_speed_by_interpolation(

@@ -48,8 +48,8 @@ class Uncertainties:
     one blade: photographed blade angles differ from the maker's own tables by 0.7 to 2.1 deg on
     slow flyers and 0.2 to 1.4 deg on thin blades, chords by 2 to 4 % (UIUC Propeller Data Site,
     volumes 1-3, against APC's PE0 files); what measured drag of sections scatters about the polars'
-    is `propmdao.aerodynamics.sections.polars.measured_drag.DRAG_SCATTER`. Transition is early on a rough blade in its own
-    wake, n_crit 3, and late in still air on a smooth one, 9.
+    is `propmdao.aerodynamics.sections.polars.measured_drag.DRAG_SCATTER`. Transition is early on a
+    rough blade in its own wake, n_crit 3, and late in still air on a smooth one, 9.
 
     Attributes
     ----------

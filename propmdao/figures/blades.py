@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import numpy.typing as npt
 
-from propmdao.figures.style import BLADE_COLORS, GRID, LINE_STYLES, page
+from propmdao.figures.style import BLADE_COLORS, GRID, LINE_STYLES, literal, page
 from propmdao.geometry.blade import Blade, span_interpolation
 from propmdao.propeller.airfoils.airfoil import CHORD_FRACTION
 from propmdao.propeller.description import Propeller
@@ -43,7 +43,7 @@ def blade_comparison(
     for i, (name, propeller) in enumerate(propellers.items()):
         # The first on top: its dashes let what is equal shine through.
         line = {"color": BLADE_COLORS[i], "linestyle": LINE_STYLES[i], "zorder": 4 - i}
-        _draw_spans(spans, propeller, linewidth=2.0, label=name, **line)
+        _draw_spans(spans, propeller, linewidth=2.0, label=literal(name), **line)
         _draw_sections(sections, propeller, section_r_over_R, linewidth=2.0, **line)
     for axes in (*spans, *sections):
         axes.grid(**GRID)

@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from propmdao.analysis.wind_tunnel import Errors, Points
-from propmdao.figures.style import GRID, LEVEL, LINE_STYLES, RUN_COLORS, page
+from propmdao.figures.style import GRID, LEVEL, LINE_STYLES, RUN_COLORS, literal, page
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -43,7 +43,7 @@ def performance(measured: Points, computed: Mapping[str, Points]) -> Figure:
     figure = page(11.0)
     grid: Any = figure.subplots(3, len(computed), sharex=True, sharey="row", squeeze=False)
     for column, (name, points) in enumerate(computed.items()):
-        grid[0, column].set_title(name, fontsize="medium")
+        grid[0, column].set_title(literal(name), fontsize="medium")
         for color, speed, run in _runs(measured):
             _draw_run(grid[:, column], measured[run], points[run], color, speed)
         grid[-1, column].set_xlabel("advance ratio J")
@@ -70,7 +70,7 @@ def _draw_run(
             y = getattr(values, name)
             shown.append(np.where(values.CT > _LEAST_THRUST, y, np.nan) if name == "eta" else y)
         axes.plot(measured.J, shown[0], "o", color=color, markersize=4, mfc="none")
-        axes.plot(points.J, shown[1], color=color, linewidth=1.8, label=label)
+        axes.plot(points.J, shown[1], color=color, linewidth=1.8, label=literal(label))
 
 
 def static_performance(measured: Points, computed: Mapping[str, Points]) -> Figure:
@@ -95,7 +95,7 @@ def static_performance(measured: Points, computed: Mapping[str, Points]) -> Figu
         axes.plot(measured.rpm, getattr(measured, name), "o", color="black", label="measured",
                   markersize=5, mfc="none")  # fmt: skip
         for i, (label, points) in enumerate(computed.items()):
-            axes.plot(points.rpm, getattr(points, name), color=RUN_COLORS[i], label=label,
+            axes.plot(points.rpm, getattr(points, name), color=RUN_COLORS[i], label=literal(label),
                       linewidth=1.8, linestyle=LINE_STYLES[i % len(LINE_STYLES)])  # fmt: skip
         axes.set(xlabel="rotation speed, rpm", ylabel=f"static {name}")
     handles, labels = both[0].get_legend_handles_labels()
@@ -129,7 +129,12 @@ def over_rpm_and_advance_ratio(
         row[0].plot(static.rpm, np.asarray(still), "o-", color="black", markersize=4)
         for color, name, run in _runs(dynamic):
             row[1].plot(
-                dynamic.J[run], np.asarray(moving)[run], "o-", color=color, markersize=4, label=name
+                dynamic.J[run],
+                np.asarray(moving)[run],
+                "o-",
+                color=color,
+                markersize=4,
+                label=literal(name),
             )
         for axes in row:
             axes.grid(**GRID)
@@ -208,7 +213,7 @@ def tone_directivity(
     axes = figure.add_subplot()
     axes.grid(**GRID)
     for color, (name, level) in zip(RUN_COLORS, computed.items(), strict=False):
-        axes.plot(np.asarray(elevation_deg), np.asarray(level), color=color, label=name)
+        axes.plot(np.asarray(elevation_deg), np.asarray(level), color=color, label=literal(name))
         axes.plot(np.asarray(measured_at_deg), np.asarray(measured[name]), "o", color=color)
     axes.set(
         xlabel="elevation from the rotor plane, deg (negative: wake side)",

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import numpy.typing as npt
 
-from propmdao.figures.style import GRID, LINE_STYLES, page
+from propmdao.figures.style import GRID, LINE_STYLES, literal, page
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -51,7 +51,7 @@ def convergence(
     ):
         axes.scatter(
             evaluation[chosen], objective[chosen], s=14, marker=marker, color=color,
-            linewidths=1.0, label=f"{name} ({chosen.sum()})",
+            linewidths=1.0, label=f"{literal(name)} ({chosen.sum()})",
         )  # fmt: skip
     if failed.any():
         axes.plot(
@@ -60,7 +60,7 @@ def convergence(
         )  # fmt: skip
     axes.step(evaluation, best, where="post", color="black", linewidth=2.0, label="best feasible")
     for (name, value), style in zip((references or {}).items(), LINE_STYLES, strict=False):
-        axes.axhline(value, color="0.4", linestyle=style, label=f"{name}, {value:.2f}")
+        axes.axhline(value, color="0.4", linestyle=style, label=f"{literal(name)}, {value:.2f}")
     axes.set(xlabel="designs evaluated", ylabel=label, xlim=(0, objective.size + 1))
     axes.legend(loc="upper right", framealpha=0.95)
     return figure

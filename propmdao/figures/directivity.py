@@ -17,6 +17,7 @@ from propmdao.figures.style import (
     half_circle,
     level_line,
     line_colors,
+    literal,
     page,
     say_silent,
 )
@@ -87,19 +88,23 @@ def directivity(
     for line in lines:
         axes.plot(
             angle, np.maximum(line.level, floor), color=line.color, linestyle=line.style,
-            label=line.label, **level_line(line.label),
+            label=literal(line.label), **level_line(line.label),
         )  # fmt: skip
         if line.label in measured:
             elevation, known = (np.asarray(values, float) for values in measured[line.label])
             axes.plot(
-                np.radians(elevation), known, "o", color=line.color, label=f"{line.label}, measured"
+                np.radians(elevation),
+                known,
+                "o",
+                color=line.color,
+                label=f"{literal(line.label)}, measured",
             )
     if microphone_deg is not None:
         axes.plot(
             np.radians([microphone_deg] * 2), [floor, top], color="#CC79A7", label="microphone",
             linewidth=2.0, zorder=1.5,
         )  # fmt: skip
-    figure.text(0.02, 0.985, title, va="top")
+    figure.text(0.02, 0.985, literal(title), va="top")
     if lines or measured:
         figure.legend(loc="upper right", bbox_to_anchor=(0.99, 0.965))
     else:
@@ -156,7 +161,7 @@ def hemisphere_map(
     figure = page(8.5, layout=None)
     axes = cast("PolarAxes", figure.add_axes((0.08, 0.1, 0.7, 0.82), projection="polar"))
     azimuth, elevation = np.radians(np.asarray(azimuth_deg, float)), np.asarray(elevation_deg)
-    figure.text(0.02, 0.98, title, va="top")
+    figure.text(0.02, 0.98, literal(title), va="top")
     if silent := not np.max(level) > LOWEST_LEVEL:
         say_silent(axes)
     else:

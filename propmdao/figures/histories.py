@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import numpy.typing as npt
 
-from propmdao.figures.style import GRID, level_line, line_colors, page
+from propmdao.figures.style import GRID, level_line, line_colors, literal, page
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -44,10 +44,14 @@ def level_history(
     colors = line_colors(levels)
     for name, level in levels.items():
         axes.plot(
-            np.asarray(time), np.asarray(level), color=colors[name], label=name, **level_line(name)
+            np.asarray(time),
+            np.asarray(level),
+            color=colors[name],
+            label=literal(name),
+            **level_line(name),
         )
     for (name, moment), style in zip((moments or {}).items(), ("--", ":", "-."), strict=False):
-        axes.axvline(moment, color="0.4", linestyle=style, label=name)
+        axes.axvline(moment, color="0.4", linestyle=style, label=literal(name))
     top = 5.0 * np.ceil(max(np.max(level) for level in levels.values()) / 5.0 + 0.5)
     bottom = 5.0 * np.floor(min(np.min(level) for level in levels.values()) / 5.0)
     axes.set(xlabel="time, s", ylabel=label, ylim=(max(bottom, top - 60.0), top))

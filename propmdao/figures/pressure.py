@@ -16,6 +16,7 @@ from propmdao.figures.style import (
     SOURCE_COLORS,
     Floats,
     line_colors,
+    literal,
     rows_of_axes,
     say_silent,
 )
@@ -120,7 +121,7 @@ def pressure(records: Mapping[str, PressureRecord]) -> Figure:
             axes.plot(
                 1e3 * record.time, 1e3 * values, color=colors[part], linewidth=width, label=part
             )
-        axes.set_title(name, fontsize="medium", loc="left")
+        axes.set_title(literal(name), fontsize="medium", loc="left")
         axes.set_ylabel("pressure, mPa")
         axes.margins(x=0.0)
         if not axes.lines:

@@ -20,6 +20,7 @@ from propmdao.figures.style import (
     Measured,
     level_line,
     line_colors,
+    literal,
     page,
     rows_of_axes,
     say_silent,
@@ -68,7 +69,7 @@ def harmonic_spectrum(sounds: Mapping[str, Sound], observer: int = 0) -> Figure:
             )
             stems.markerline.set(color=colors[source], markersize=5, marker=_MARKERS[i])
             stems.stemlines.set(color=colors[source], linewidth=2.0)
-        axes.set_title(f"{name}: BPF {frequency[0]:.1f} Hz", fontsize="medium", loc="left")
+        axes.set_title(f"{literal(name)}: BPF {frequency[0]:.1f} Hz", fontsize="medium", loc="left")
         axes.set(ylabel=f"SPL, {LEVEL}", ylim=(floor, top))
         if not axes.containers:
             axes.set_xlim(right=1.05 * frequency[-1])
@@ -106,7 +107,7 @@ def narrowband_spectrum(
     for axes, (name, sound) in zip(rows, sounds.items(), strict=True):
         loudest = max(loudest, _draw_narrowband(axes, sound, observer, bins))
         bpf = sound.tones.frequency_hz[0]
-        axes.set_title(f"{name}: BPF {bpf:.1f} Hz", fontsize="medium", loc="left")
+        axes.set_title(f"{literal(name)}: BPF {bpf:.1f} Hz", fontsize="medium", loc="left")
         axes.set_ylabel(f"SPL, {LEVEL}")
     top = 5.0 * np.ceil(loudest / 5.0 + 0.5)
     rows[0].set_ylim(max(top - 60.0, LOWEST_LEVEL), top)
@@ -179,14 +180,16 @@ def third_octaves(
         if np.max(level) > floor:
             style = "-" if name in SOURCE_COLORS or not measured else "--"
             axes.plot(
-                np.asarray(bands_hz), np.asarray(level), style, color=color, label=name,
+                np.asarray(bands_hz), np.asarray(level), style, color=color, label=literal(name),
                 **level_line(name),
             )  # fmt: skip
         if name in measured:
             band, known = (np.asarray(values, float) for values in measured[name])
-            axes.plot(band, known, "o-", color=color, linewidth=0.7, label=f"{name}, measured")
+            axes.plot(
+                band, known, "o-", color=color, linewidth=0.7, label=f"{literal(name)}, measured"
+            )
     axes.set(ylabel=f"band level, {LEVEL}", ylim=(floor, top))
-    axes.set_title(title, fontsize="medium", loc="left")
+    axes.set_title(literal(title), fontsize="medium", loc="left")
     _frequency_axis(axes)
     if axes.lines:
         figure.legend(loc="outside upper center", ncols=4)

@@ -1,7 +1,7 @@
 """What all figures share: the page, axes, colours, line styles.
 
 Every figure is a `matplotlib.figure.Figure` of 1200 pixels' width that needs no display;
-``figure.savefig("name.png")`` writes it. A noise source has one colour in all of them, and what is
+`save` writes it. A noise source has one colour in all of them, and what is
 measured is a dot of the colour of the line that it belongs to.
 """
 
@@ -9,10 +9,13 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Iterable, Mapping
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal, cast
 
 import numpy as np
 import numpy.typing as npt
+
+from propmdao.runtime.output_files import replacing
 
 if TYPE_CHECKING:
     from matplotlib.projections.polar import PolarAxes
@@ -67,6 +70,41 @@ def page(height: float, layout: Literal["constrained"] | None = "constrained") -
         The empty figure.
     """
     return Figure(figsize=(10.0, height), dpi=120, layout=layout)
+
+
+def literal(text: str) -> str:
+    """Text of users for titles and legends, in which a dollar begins no formula.
+
+    Parameters
+    ----------
+    text : str
+        Name or title that the user gave.
+
+    Returns
+    -------
+    str
+        The text as matplotlib has to be told it.
+    """
+    return text.replace("$", r"\$")
+
+
+def save(figure: Figure, path: Path) -> None:
+    """Write a figure to a file that is whole at any time.
+
+    Parameters
+    ----------
+    figure : Figure
+        The figure.
+    path : Path
+        File to write or replace, of a format by its ending; its folder must exist.
+
+    Raises
+    ------
+    OutputError
+        If the file cannot be written.
+    """
+    with replacing(path) as file:
+        figure.savefig(file)
 
 
 def rows_of_axes(n: int) -> tuple[Figure, npt.NDArray[Any]]:

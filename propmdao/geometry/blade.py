@@ -8,6 +8,7 @@ import numpy as np
 import numpy.typing as npt
 from scipy.interpolate import CubicSpline
 
+from propmdao.geometry.spline_swings import warn_of_swings
 from propmdao.propeller.airfoils.airfoil import DESIGN_LIFT_WEIGHTS, naca4_camber_line
 from propmdao.propeller.description import Propeller
 from propmdao.records.pytrees import record
@@ -57,7 +58,13 @@ class Blade:
         Blade
             The blade. A station without camber gets the NACA mean line with its maximum at
             0.4 c as its shape, so that camber can be added to it.
+
+        Warns
+        -----
+        ChordWarning
+            Where the chord between two stations is far from the chords at them.
         """
+        warn_of_swings(propeller.r_over_R, propeller.c_over_R, 0.5 * float(propeller.diameter))
         camber, thickness = propeller.sections()
         peak = np.argmax(np.abs(camber), axis=1)
         max_camber = np.take_along_axis(camber, peak[:, None], axis=1)[:, 0]

@@ -34,6 +34,7 @@ from rich.table import Table
 from scipy.stats import sobol_indices, uniform
 
 from propmdao.components import SweepDriver
+from propmdao.figures.style import save
 
 Array = npt.NDArray[np.float64]
 VARIABLES = {  # column of the table: name
@@ -218,8 +219,8 @@ def main() -> None:
         name: sensitivities(x, y[name], fits[name], options.seed) for name in RESPONSES
     }
     print_table(measures, fits, len(x))
-    plot_responses(x, y, fits).savefig(options.output / "doe_responses.png")
-    plot_sensitivities(measures).savefig(options.output / "doe_sensitivities.png")
+    save(plot_responses(x, y, fits), options.output / "doe_responses.png")
+    save(plot_sensitivities(measures), options.output / "doe_sensitivities.png")
 
 
 if __name__ == "__main__":

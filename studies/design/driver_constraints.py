@@ -27,6 +27,7 @@ from rich.console import Console
 from rich.table import Table
 
 from propmdao.components import DifferentialEvolutionDriver
+from propmdao.runtime.output_files import replacing
 
 TOLERANCE = 1e-3  # of a constraint, absolute; all are of order one
 GENERATIONS, POPULATION, SEED = 100, 40, 1
@@ -166,7 +167,10 @@ def main() -> None:
         os.environ["OPENMDAO_WORKDIR"] = folder
         outcomes = results()
     names = list(next(iter(outcomes.values())))
-    with (output / "driver_constraints.csv").open("w", newline="", encoding="utf-8") as file:
+    with (
+        replacing(output / "driver_constraints.csv") as beside,
+        beside.open("w", newline="", encoding="utf-8") as file,
+    ):
         writer = csv.writer(file)
         writer.writerow(["case", "driver", "objective above the optimum, or what is wrong", "runs"])
         writer.writerows([case, name, *outcomes[case][name]] for case in outcomes for name in names)

@@ -36,6 +36,7 @@ from propmdao.figures import searches
 from propmdao.figures.blades import blade_comparison
 from propmdao.figures.directivity import directivity
 from propmdao.figures.spectra import third_octaves
+from propmdao.figures.style import save
 
 COARSE = pm.Fidelity(n_chordwise=4, n_spanwise=12, n_contour=21, n_surface_span=20, n_harmonics=4)
 TOLERANCE = 1e-4  # of a constraint in driver scaling
@@ -224,7 +225,7 @@ def draw(results: Results, output: Path) -> None:
         ("total", directivity(elevations, total, label="A-weighted total")),
         ("broadband", spectrum),
     ):
-        figure.savefig(output / f"{name}.png")
+        save(figure, output / f"{name}.png")
 
 
 def main() -> None:

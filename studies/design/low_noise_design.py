@@ -29,6 +29,7 @@ from propmdao.figures.directivity import directivity
 from propmdao.figures.pressure import blade_passage, pressure
 from propmdao.figures.sound import Sound, source_levels
 from propmdao.figures.spectra import harmonic_spectrum
+from propmdao.figures.style import save
 from propmdao.formats.naca_blade import with_naca_sections
 from propmdao.propeller.airfoils.airfoil import max_camber_for_design_lift
 
@@ -198,7 +199,7 @@ def main() -> None:
         ("pressure", pressure(passages)),
         ("directivity", directivity(DIRECTIVITY, levels, microphone_deg=MICROPHONE)),
     ):
-        figure.savefig(output / f"{name}.png")
+        save(figure, output / f"{name}.png")
     print(f"\nTable, figures, the blades as propeller files and every design tried: {output}")
 
 

@@ -27,6 +27,7 @@ import openmdao.api as om
 
 import propmdao as pm
 from propmdao.components import DifferentialEvolutionDriver, PropellerGroup
+from propmdao.runtime.locks import InUseError
 from propmdao.runtime.worker_processes import start_workers, use_one_thread
 
 PROPELLER = pm.load_propeller("apcsf_11x4.7")
@@ -110,7 +111,10 @@ def main() -> None:
             best_file=None,
         )
         started = time.perf_counter()
-        prob.run_driver()
+        try:
+            prob.run_driver()
+        except InUseError as error:
+            parser.exit(2, f"{parser.prog}: error: {error}\n")
         seconds = time.perf_counter() - started
     runs = prob.driver.history[-1].evaluations
     torque, before = (p.get_val("torque", units="N*m")[0] for p in (prob, baseline))

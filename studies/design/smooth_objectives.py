@@ -28,6 +28,8 @@ from scipy.ndimage import median_filter
 import propmdao as pm
 from propmdao.analysis.comparisons import Rows, markdown
 from propmdao.figures import searches
+from propmdao.figures.style import save
+from propmdao.runtime.output_files import replacing
 
 Array = NDArray[np.float64]
 QUICK = pm.Fidelity(n_chordwise=4, n_spanwise=12, n_contour=21, n_surface_span=20, n_harmonics=4)
@@ -187,7 +189,10 @@ def main() -> None:
     for suspect in sorted(least_smooth, key=lambda suspect: suspect.power)[:5]:
         print(f"{suspect.response}: line {suspect.line} at {suspect.position:.4f}, "
               f"power {suspect.power:.2f}")  # fmt: skip
-    with (output / "smooth_objectives.csv").open("w", newline="", encoding="utf-8") as stream:
+    with (
+        replacing(output / "smooth_objectives.csv") as beside,
+        beside.open("w", newline="", encoding="utf-8") as stream,
+    ):
         writer = csv.writer(stream)
         writer.writerow(["line", "position", *RESPONSES])
         for number, line_values in enumerate(values):
@@ -201,7 +206,7 @@ def main() -> None:
     )
     first = figure.axes[0]
     first.legend(first.lines, [f"line {number}" for number in range(options.lines)])
-    figure.savefig(output / "scans.png")
+    save(figure, output / "scans.png")
     print(f"Table and figure: {output}")
 
 

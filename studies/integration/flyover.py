@@ -24,7 +24,9 @@ from propmdao.figures.directivity import hemisphere_map
 from propmdao.figures.histories import level_history
 from propmdao.figures.of_analysis import analysis_sound
 from propmdao.figures.sound import source_levels
+from propmdao.figures.style import save
 from propmdao.records.models import Trip
+from propmdao.runtime.output_files import replacing
 
 PROPELLER = pm.load_propeller("apcsf_11x4.7")
 THRUST, SPEED, DENSITY = 1.2, 8.0, 1.225  # N, m/s, kg/m3
@@ -64,7 +66,10 @@ def main() -> None:
     tripped = pm.fly_over(analyze("heavy"), FLIGHT)
     levels = {part: untripped.level_dba(part) for part in untripped.mean_square}
     levels[TRIPPED] = tripped.level_dba()
-    with (output / "levels_dba.csv").open("w", newline="", encoding="utf-8") as stream:
+    with (
+        replacing(output / "levels_dba.csv") as beside,
+        beside.open("w", newline="", encoding="utf-8") as stream,
+    ):
         writer = csv.writer(stream)
         writer.writerow(["time_s", *levels])
         for row in zip(untripped.time, *levels.values(), strict=True):
@@ -76,13 +81,17 @@ def main() -> None:
         level = summary["levels"]["total"]
         print(f"{name}: LAmax {level['lamax_dba']:.1f} dBA, SEL {level['sel_dba']:.1f} dBA, "
               f"EPNL {summary['epnl']:.1f} EPNdB")  # fmt: skip
-    level_history(
+    save(level_history(
         untripped.time, levels, f"A-weighted level of {STEP:g} s, dB re 20 µPa",
         {"heard from overhead": FLIGHT.miss_distance / float(analysis.state.air.sound_speed)},
-    ).savefig(output / "levels.png")  # fmt: skip
-    hemisphere_map(
-        *hemisphere(analysis), f"OASPL at {FLIGHT.height:g} m, dB re 20 µPa; azimuth from the nose"
-    ).savefig(output / "hemisphere.png")
+    ), output / "levels.png")  # fmt: skip
+    save(
+        hemisphere_map(
+            *hemisphere(analysis),
+            f"OASPL at {FLIGHT.height:g} m, dB re 20 µPa; azimuth from the nose",
+        ),
+        output / "hemisphere.png",
+    )
     print(f"Levels and figures: {output}")
 
 

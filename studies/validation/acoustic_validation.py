@@ -35,7 +35,9 @@ from propmdao.figures.of_analysis import analysis_sound, mechanism_levels
 from propmdao.figures.pressure import pressure, sampled
 from propmdao.figures.sound import Sound, band_levels, source_levels
 from propmdao.figures.spectra import narrowband_spectrum, third_octaves
+from propmdao.figures.style import save
 from propmdao.formats.wav import write_wav
+from propmdao.runtime.output_files import replacing
 
 PROPELLER = "apcsf_11x4.7"
 OTHER = "apcsf_10x4.7"  # to be heard beside it, at the same thrust
@@ -209,21 +211,22 @@ def draw(hovers: Mapping[int, Hover], bands: Sequence[Comparison], test: Mapping
     arc = shown.on_arc(shown.elevation_deg)
     names = {rpm: f"{rpm} rpm" for rpm in hovers}
     observer = shown.observer(MICROPHONE)
-    narrowband_spectrum(
+    save(narrowband_spectrum(
         {names[rpm]: hovering.sound for rpm, hovering in hovers.items()}, observer
-    ).savefig(output / "figure_4_12_spectrum.png")  # fmt: skip
+    ), output / "figure_4_12_spectrum.png")  # fmt: skip
 
     measured = {comparison.noise: (comparison.frequency_hz, comparison.measured_db)
                 for comparison in bands
                 if (comparison.rpm, comparison.elevation_deg) == (RPM, MICROPHONE)}  # fmt: skip
-    third_octaves(BANDS_HZ, mechanism_levels(shown.analysis, observer), measured).savefig(
-        output / "figure_4_13_third_octaves.png"
+    save(
+        third_octaves(BANDS_HZ, mechanism_levels(shown.analysis, observer), measured),
+        output / "figure_4_13_third_octaves.png",
     )
 
     sources = source_levels(shown.sound)
-    directivity(
+    save(directivity(
         arc, {name: shown.on_arc(level) for name, level in sources.items()}
-    ).savefig(output / "figure_4_14a_sources.png")  # fmt: skip
+    ), output / "figure_4_14a_sources.png")  # fmt: skip
     overall = {names[rpm]: hovering.on_arc(source_levels(hovering.sound)["total"])
                for rpm, hovering in hovers.items()}  # fmt: skip
     measured_overall = {
@@ -234,7 +237,7 @@ def draw(hovers: Mapping[int, Hover], bands: Sequence[Comparison], test: Mapping
         for comparison in bands
         if comparison.noise == "total"
     }
-    directivity(arc, overall, measured_overall).savefig(output / "figure_4_14b_total.png")
+    save(directivity(arc, overall, measured_overall), output / "figure_4_14b_total.png")
 
     passage = test["blade_passage"]
     tone = {names[rpm]: hovering.on_arc(np.asarray(spl_db(hovering.analysis.tones.total[:, 0])))
@@ -243,16 +246,23 @@ def draw(hovers: Mapping[int, Hover], bands: Sequence[Comparison], test: Mapping
         f"{rpm} rpm": (passage["elevation_deg"], level)
         for rpm, level in zip(passage["rpm"], passage["spl_db"], strict=True)
     }
-    directivity(arc, tone, measured_tone, "SPL at blade passage").savefig(
-        output / "figure_4_15_blade_passage.png"
+    save(
+        directivity(arc, tone, measured_tone, "SPL at blade passage"),
+        output / "figure_4_15_blade_passage.png",
     )
 
 
 def write(output: Path, tones: Iterable[Sequence[str]], bands: Iterable[Comparison]) -> None:
     """Write the tables."""
-    with (output / "table_4_7.csv").open("w", newline="", encoding="utf-8") as stream:
+    with (
+        replacing(output / "table_4_7.csv") as beside,
+        beside.open("w", newline="", encoding="utf-8") as stream,
+    ):
         csv.writer(stream).writerows(tones)
-    with (output / "third_octaves.csv").open("w", newline="", encoding="utf-8") as stream:
+    with (
+        replacing(output / "third_octaves.csv") as beside,
+        beside.open("w", newline="", encoding="utf-8") as stream,
+    ):
         writer = csv.writer(stream)
         writer.writerow(["noise", "rpm", "elevation_deg", "frequency_hz", "measured_db",
                          "computed_db", "error_db"])  # fmt: skip
@@ -290,7 +300,7 @@ def main() -> None:
     draw(hovers, bands, test, output)
     blades = two_blades(float(hovers[RPM].analysis.loads.thrust), test["radius"], output)
     turns = {name: sampled(sound, SAMPLE_RATE, 60.0 / RPM) for name, sound in blades.items()}
-    pressure(turns).savefig(output / "pressure.png")
+    save(pressure(turns), output / "pressure.png")
     print(f"Tables, figures and sound: {output}")
 
 

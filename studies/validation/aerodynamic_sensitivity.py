@@ -30,6 +30,7 @@ from propmdao.analysis.wind_tunnel import (
     zero_thrust_twist_deg,
 )
 from propmdao.figures import comparisons
+from propmdao.figures.style import save
 
 PITCH = {"apcsf_11x4.7": 0.11938, "apce_10x7": 0.1778}  # m, the maker's: 4.7 and 7 in
 OUTBOARD = 0.55  # r/R from which the maker's table of the sister 10x7SF has its nominal pitch
@@ -148,7 +149,7 @@ def main() -> None:
         figure = comparisons.over_rpm_and_advance_ratio(
             tunnel.static, climbing, dict(zip(labels, zip(still, moving, strict=True), strict=True))
         )
-        figure.savefig(output / f"{case}_twist_needed.png")
+        save(figure, output / f"{case}_twist_needed.png")
         rows_needed = zip(
             *(np.append(getattr(tunnel.static, name), getattr(climbing, name)) for name in
               ("rpm", "J")), *np.concatenate([still, moving], axis=1), strict=True

@@ -35,8 +35,10 @@ from propmdao.analysis.wind_tunnel import (
     zero_thrust_twist_deg,
 )
 from propmdao.figures import comparisons
+from propmdao.figures.style import save
 from propmdao.geometry.blade import Blade
 from propmdao.propeller.catalog import catalog_names
+from propmdao.runtime.output_files import replacing
 from propmdao.runtime.worker_processes import results_in_order, start_workers
 
 MEASUREMENTS = Path(__file__).parent / "measurements"
@@ -240,7 +242,7 @@ def verdicts(propellers: Sequence[Comparison]) -> list[dict[str, str | float]]:
 
 def write_csv(file: Path, rows: Sequence[Mapping[str, object]]) -> None:
     """Write a table; the first row has all columns."""
-    with file.open("w", newline="", encoding="utf-8") as stream:
+    with replacing(file) as beside, beside.open("w", newline="", encoding="utf-8") as stream:
         writer = csv.DictWriter(stream, list(rows[0]))
         writer.writeheader()
         writer.writerows(rows)
@@ -332,14 +334,14 @@ def write_figures(output: Path, propellers: Sequence[Comparison]) -> None:
         comparison.propeller: {column.name: column.errors for column in comparison.columns}
         for comparison in propellers
     }
-    comparisons.errors_by_propeller(off).savefig(output / "catalogue.png")
+    save(comparisons.errors_by_propeller(off), output / "catalogue.png")
     for comparison in propellers:
         titles = [
             f"{comparison.propeller}, {c.name} ({c.twist_deg:+.2f} deg)" for c in comparison.columns
         ]
         moving = {t: c.dynamic for t, c in zip(titles, comparison.columns, strict=True)}
         figure = comparisons.performance(comparison.tunnel.dynamic, moving)
-        figure.savefig(output / f"{comparison.propeller}.png")
+        save(figure, output / f"{comparison.propeller}.png")
 
 
 if __name__ == "__main__":

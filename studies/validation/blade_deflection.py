@@ -30,6 +30,7 @@ from propmdao.analysis.elastic.materials import material_of
 from propmdao.analysis.wind_tunnel import read_wind_tunnel
 from propmdao.records.models import ElasticModel
 from propmdao.records.units import RAD_PER_S
+from propmdao.runtime.output_files import replacing
 from propmdao.structures.shapes import N_SHAPES
 from propmdao.structures.vibration import natural_frequencies
 
@@ -148,7 +149,10 @@ def main() -> None:
         print("gain of CT in %: rigid {:.1f}, elastic {:.1f}, measured {:.1f}".format(*gains))
         frequency = bending_frequency(propeller, material)
         print(f"lowest bending frequency, at rest: {frequency * 2.0 * np.pi / RAD_PER_S:.0f} rpm\n")
-        with (options.output / f"{propeller.name}.csv").open("w", newline="") as stream:
+        with (
+            replacing(options.output / f"{propeller.name}.csv") as beside,
+            beside.open("w", newline="") as stream,
+        ):
             writer = csv.writer(stream)
             writer.writerow(field.name for field in dataclasses.fields(Point))
             writer.writerows(dataclasses.astuple(point) for point in computed)

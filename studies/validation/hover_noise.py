@@ -24,9 +24,11 @@ from propmdao.acoustics.levels.decibels import spl_db
 from propmdao.acoustics.sources.formulation1a import tones
 from propmdao.analysis.wind_tunnel import read_wind_tunnel, zero_thrust, zero_thrust_twist_deg
 from propmdao.figures import comparisons
+from propmdao.figures.style import save
 from propmdao.geometry.meshes import propeller_surface
 from propmdao.geometry.surface import surface_panels
 from propmdao.records.loads import PointLoads
+from propmdao.runtime.output_files import replacing
 
 PROPELLER = pm.load_propeller("apcsf_11x4.7")
 MEASURED = Path(__file__).parent / "measurements" / "hover_noise_apcsf_11x4.7.toml"
@@ -183,7 +185,10 @@ def main() -> None:
 
     levels = hover_tones()
     head, *body = rows(levels)
-    with (output / "hover_noise.csv").open("w", newline="", encoding="utf-8") as stream:
+    with (
+        replacing(output / "hover_noise.csv") as beside,
+        beside.open("w", newline="", encoding="utf-8") as stream,
+    ):
         csv.writer(stream).writerows([head, *body])
     table = Table(*head, box=None, padding=(0, 1, 0, 0))
     for row in body:
@@ -197,10 +202,10 @@ def main() -> None:
         print(f"The band lacks {reason}.")
     print(f"Measured levels are up to {off_power_law_db(levels):.1f} dB off a power of rpm.")
     names = [f"{rpm} rpm" for rpm in levels.rpm]
-    comparisons.tone_directivity(
+    save(comparisons.tone_directivity(
         ARC, dict(zip(names, levels.arc_db, strict=True)),
         levels.elevation_deg, dict(zip(names, levels.measured_db, strict=True)),
-    ).savefig(output / "directivity.png")  # fmt: skip
+    ), output / "directivity.png")  # fmt: skip
     print(f"Table and figure: {output}")
 
 

@@ -272,7 +272,10 @@ def main() -> None:
         f"the mean difference is {inside.mean():.2f}."
     )
     output.mkdir(parents=True, exist_ok=True)
-    with open(output / "points.csv", "w", encoding="utf-8", newline="") as file:
+    with (
+        replacing(output / "points.csv") as beside,
+        beside.open("w", encoding="utf-8", newline="") as file,
+    ):
         writer = csv.writer(file)
         writer.writerow(["section", "Re", "cl", "cd", *columns])
         for i, section in enumerate(points.section):
@@ -289,7 +292,7 @@ def main() -> None:
         {"n_crit 5, as computed": np.exp(columns["n_crit 5"]),
          "drag at the measured level": np.exp(columns["measured level"])},
     )  # fmt: skip
-    figure.savefig(output / "section_drag.png")
+    save(figure, output / "section_drag.png")
     print(f"All points and the figure: {output}")
 
 

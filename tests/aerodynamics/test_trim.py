@@ -104,6 +104,29 @@ def test_any_solver_can_be_trimmed(slow_flyer):
         trim(solver, slow_flyer.case(speed=5.0), 50.0, Bounds(10.0, 900.0))
 
 
+def test_ends_without_a_solution_are_told_in_words(slow_flyer):
+    def thrust_of(case, rotation_speed):
+        return np.where(rotation_speed > 500.0, np.nan, 2e-5 * rotation_speed**2)
+
+    solver = _hashable(
+        types.SimpleNamespace(
+            solve=lambda case: types.SimpleNamespace(
+                thrust=thrust_of(case, case.state.rotation_speed)
+            ),
+            flow_at=lambda case: case,
+            evaluate=lambda flow, required, omega: (
+                jnp.where(omega > 500.0, jnp.nan, 2e-5 * omega**2),
+                {},
+            ),
+            solution=lambda flow, required, omega, results: results,
+        )
+    )
+    with pytest.raises(
+        TrimError, match="out of reach at 5 m/s: 0.002 N at .* rpm, no solution at 8594.37 rpm"
+    ):
+        trim(solver, slow_flyer.case(speed=5.0), 2.0, Bounds(10.0, 900.0))
+
+
 def _hashable(namespace):
     """As modules are: equal to itself alone."""
     return type("Solver", (), {k: staticmethod(v) for k, v in vars(namespace).items()})

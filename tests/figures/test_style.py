@@ -5,13 +5,18 @@ from __future__ import annotations
 import subprocess
 import sys
 
+import numpy as np
 import pytest
 
 pytest.importorskip("matplotlib")
 
 from matplotlib import colors
+from matplotlib.text import Text
 
-from propmdao.figures.style import SOURCE_COLORS, line_colors
+from propmdao.analysis.self_noise import BANDS_HZ
+from propmdao.figures.spectra import third_octaves
+from propmdao.figures.style import SOURCE_COLORS, line_colors, literal, page, save
+from propmdao.runtime.output_files import OutputError
 
 SOUNDS = [
     "narrowband_spectrum", "narrowband_spectrum_of_tones", "third_octaves", "pressure_of_records",
@@ -110,3 +115,38 @@ def test_nothing_but_figures_needs_matplotlib():
         "import propmdao.analysis.single_point, propmdao.components, propmdao.analysis.comparisons"
     )
     subprocess.run([sys.executable, "-c", code], check=True)
+
+
+@pytest.mark.parametrize("name", ["$5 blade", "x$\\frac{$y", "$a$ and $b$"])
+def test_a_dollar_in_a_name_begins_no_formula(name, tmp_path):
+    figure = page(2.0)
+    axes = figure.subplots()
+    axes.set_title(literal(name))
+    axes.plot([0.0, 1.0], label=literal(name))
+    legend = axes.legend()
+    save(figure, tmp_path / "figure.png")
+    for text in (axes.title, *legend.get_texts()):
+        assert text._preprocess_math(text.get_text()) == (name, False)
+
+
+def test_names_of_propellers_are_literal(tmp_path):
+    name = "x$\\frac{$y at 4000 rpm"
+    figure = third_octaves(BANDS_HZ, {name: np.full(len(BANDS_HZ), 40.0)}, title=name)
+    save(figure, tmp_path / "figure.png")
+    named = [text for text in figure.findobj(Text) if "frac" in text.get_text()]
+    assert named
+    assert all(text._preprocess_math(text.get_text()) == (name, False) for text in named)
+
+
+def test_a_figure_that_cannot_be_written_leaves_the_old_one(tmp_path):
+    file = tmp_path / "figure.png"
+    file.write_text("old")
+
+    class Broken:
+        def savefig(self, path):
+            path.write_text("half")
+            raise OSError(28, "No space left on device")
+
+    with pytest.raises(OutputError, match="No space left"):
+        save(Broken(), file)
+    assert file.read_text() == "old" and list(tmp_path.iterdir()) == [file]

@@ -112,7 +112,8 @@ def declare_runner_options(options: OptionsDictionary) -> None:
         allow_none=True,
         check_valid=_require_time,
         desc="Seconds after which the process that runs the model is ended and the design has "
-        "failed; None: no limit. Compilation counts, in the first design of each process. With "
+        "failed; None: no limit. Compilation does not count: the first design of a process may "
+        "take as much longer as the slowest first one before it took, the very first 300 s. With "
         "n_workers 1 the model runs in one process beside this one.",
     )
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import threading
+import time
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from concurrent.futures import ThreadPoolExecutor
 from multiprocessing.connection import Connection
@@ -21,6 +22,9 @@ from propmdao.components.drivers.evaluation.worker_pool import (
 )
 from propmdao.runtime.worker_processes import results_in_order, start_process
 
+#: Time that the first design of a process may take beside the limit, while none has ended [s].
+COMPILING = 300.0
+
 
 class TimeLimitedWorkers:
     """Models in processes of their own, each run from the output values it is sent.
@@ -35,7 +39,9 @@ class TimeLimitedWorkers:
     n_workers : int
         Number of processes.
     time_limit : float
-        Seconds that a design may take. The building of a model does not count.
+        Seconds that a design may take. The building of a model does not count. Nor does
+        compilation: the first design of a process may take as much longer as the slowest first
+        design before it took, or `COMPILING` where there is none yet.
     environment : mapping of str to str
         Environment variables set in every process.
 
@@ -61,6 +67,7 @@ class TimeLimitedWorkers:
         self._lock = threading.Lock()
         self._processes: list[BaseProcess] = []
         self._closed = False
+        self._first_designs: list[float] = []  # how long they took
 
     def run(self, starts: Iterable[Array]) -> Iterator[ModelRun]:
         """Run the model from each of several outputs vectors, as `WorkerPool.run` does.
@@ -73,7 +80,8 @@ class TimeLimitedWorkers:
         Yields
         ------
         ModelRun
-            Runs in the order of `starts`; one that took too long has failed for that reason.
+            Runs in the order of `starts`; one that took too long has failed for that reason, and
+            so has one whose process has died.
         """
         for run in results_in_order(self._threads, self._run_one, starts):
             raise_unless_built(run)
@@ -91,18 +99,29 @@ class TimeLimitedWorkers:
 
     def _run_one(self, start: Array) -> ModelRun:
         """Run the model from one outputs vector in the process of this thread."""
-        if getattr(self._of_thread, "worker", None) is None:
+        limit, is_first = self._time_limit, getattr(self._of_thread, "worker", None) is None
+        if is_first:
             self._of_thread.worker = self._start()
+            with self._lock:
+                limit += max(self._first_designs, default=COMPILING)
         process, connection = self._of_thread.worker
-        connection.send(start)
-        if connection.poll(self._time_limit):
-            run: ModelRun = connection.recv()  # an EOFError where the process has died
-            return run
+        begin = time.monotonic()
+        try:
+            connection.send(start)
+            if connection.poll(limit):
+                run: ModelRun = connection.recv()
+                if is_first:
+                    with self._lock:
+                        self._first_designs.append(time.monotonic() - begin)
+                return run
+            failure = f"took longer than {limit:g} s"
+        except (EOFError, OSError):  # nobody is there at the other end
+            failure = "its process ended without a result: killed, out of memory or crashed"
         self._of_thread.worker = None
         process.kill()
         process.join()
         connection.close()
-        return ModelRun(start, failure=f"took longer than {self._time_limit:g} s")
+        return ModelRun(start, failure=failure)
 
     def _start(self) -> tuple[BaseProcess, Connection]:
         """Start a process and wait until it has built its model, or has failed to."""

@@ -98,7 +98,7 @@ def source_history(
     return source.scale(air) * _march(
         source.kernel,
         in_frame,
-        poses(motion, tau),
+        poses(motion, tau).time_last,
         jnp.asarray(tau),
         observers,
         (jnp.asarray(clock[0]), jnp.asarray(step)),

@@ -82,7 +82,7 @@ def emission(
     sources : Sources
         Sources in their frame.
     pose : Poses
-        Poses of the frame at the source times.
+        Poses of the frame at the source times, as `Poses.time_last` has them.
     tau : (n_times,) array
         Source times [s].
     observer, observer_velocity : (3,) arrays
@@ -98,7 +98,7 @@ def emission(
     c = sound_speed
     turns = tuple(map(jnp.asarray, (pose.rotation, pose.rotation_rate, pose.rotation_acceleration)))
     y, v, a = (
-        _add(_derivative(turns, sources.position, k), tuple(origin.T))
+        _add(_derivative(turns, sources.position, k), tuple(origin))
         for k, origin in enumerate((pose.origin, pose.velocity, pose.acceleration))
     )
     q, q_dot = (_derivative(turns, sources.vector, k) for k in range(2))
@@ -202,7 +202,7 @@ def _derivative(turns: tuple[Array, ...], local: tuple[Array, ...], order: int) 
     total: _Vector | None = None
     for k in range(min(order + 1, len(local))):
         factor, matrix, x = comb(order, k), turns[order - k], local[k]
-        tx, ty, tz = (factor * _dot(tuple(matrix[:, i].T), tuple(x)) for i in range(3))
+        tx, ty, tz = (factor * _dot(tuple(matrix[i]), tuple(x)) for i in range(3))
         total = (tx, ty, tz) if total is None else _add(total, (tx, ty, tz))
     assert total is not None
     return total

@@ -94,7 +94,7 @@ def rotor_tones(
         blade = _fourier_integral(
             TONAL_SOURCES[name].kernel,
             frame_sources(rotor.source(name, 0, 0.0, tau)),
-            poses(flight, tau),
+            poses(flight, tau).time_last,
             jnp.asarray(tau),
             jnp.asarray(x),
             jnp.asarray(v),
@@ -158,7 +158,7 @@ def _fourier_integral(
 
             emitted = emission(
                 jax.tree.map(now, sources),
-                jax.tree.map(lambda q: q[j][None], pose),
+                jax.tree.map(lambda q: q[..., j][..., None], pose),
                 tau[j][None],
                 observer,
                 velocity,

@@ -52,6 +52,15 @@ def test_objective_of_minus_infinity_is_a_failure(problem):
     assert_allclose(prob.get_val("x"), 0.5, atol=1e-3)
 
 
+def test_the_summary_is_one_line_that_no_terminal_obeys(problem, capsys):
+    def fail(x):
+        raise om.AnalysisError("red \x1b[31m ink")
+
+    problem(fail, [0.0], [1.0], max_gen=1, disp=True).run_driver()
+    (line,) = capsys.readouterr().out.splitlines()
+    assert "comp: red \\x1b[31m ink" in line
+
+
 def test_every_analysis_failed(problem):
     def fail(x):
         raise om.AnalysisError("no thrust")

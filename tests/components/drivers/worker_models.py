@@ -38,9 +38,12 @@ class Disc(om.ExplicitComponent):
     def compute(self, inputs, outputs):
         x, trouble = inputs["x"], self.options["trouble"]
         time.sleep(self.options["seconds"])
+        if trouble == "compile" and not hasattr(self, "compiled"):
+            time.sleep(2.5)
+            self.compiled = True
         if x[0] < -1.0:
             raise om.AnalysisError("left of -1")
-        if trouble and x[1] > 1.2:
+        if trouble not in ("", "compile") and x[1] > 1.2:
             if trouble == "value":
                 raise ValueError("chord_over_R must be positive")
             if trouble == "hang":

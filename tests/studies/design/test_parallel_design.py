@@ -10,6 +10,8 @@ from pathlib import Path
 
 import pytest
 
+from propmdao.runtime.locks import locked
+
 pytestmark = pytest.mark.slow
 
 
@@ -52,3 +54,10 @@ def test_mpi(checkout: Path, tmp_path: Path, by_processes: str) -> None:
         pytest.skip("there is no mpiexec")
     launcher = (mpiexec, "-n", "3", sys.executable, "-m", "mpi4py.futures")
     assert search(checkout, tmp_path, "--on", "mpi", launcher=launcher) == by_processes
+
+
+def test_a_checkpoint_that_is_in_use_is_told_in_one_line(checkout: Path, tmp_path: Path) -> None:
+    with locked(tmp_path / "checkpoint"), pytest.raises(AssertionError) as caught:
+        search(checkout, tmp_path, "--checkpoint", "checkpoint")
+    assert "Traceback" not in str(caught.value)
+    assert "parallel_design.py: error: " in str(caught.value)

@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from propmdao.components.drivers.equality_slack import EqualitySlack
 from propmdao.components.drivers.evaluation.candidate import Candidate
+from propmdao.components.drivers.evolution.equality_slack import EqualitySlack
 
 
 def candidate(*violation):

@@ -10,9 +10,9 @@ import numpy as np
 from scipy.optimize import NonlinearConstraint, OptimizeResult, differential_evolution
 from tqdm import tqdm
 
-from propmdao.components.drivers.equality_slack import EqualitySlack
 from propmdao.components.drivers.evaluation.candidate import Array, Candidate
 from propmdao.components.drivers.evaluation.failure_reasons import FailureReasons
+from propmdao.components.drivers.evolution.equality_slack import EqualitySlack
 
 
 @dataclasses.dataclass(frozen=True)
@@ -73,6 +73,8 @@ class ConstrainedSearch:
         Reason of the latest failure, empty when there was none.
     history : list of Generation
         State after each generation.
+    stopped : bool
+        Whether a `SearchStopped` has ended the search.
     """
 
     def __init__(
@@ -88,6 +90,7 @@ class ConstrainedSearch:
         self.reasons = FailureReasons()
         self.last_failure = ""
         self.history: list[Generation] = []
+        self.stopped = False
         self._evaluate = evaluate
         self._slack = slack
         self._improved = improved
@@ -125,9 +128,27 @@ class ConstrainedSearch:
             result = self._scipy_run(population, max_generations - n_shrinking, scipy_options)
             ending = "converged" if result.success else "stopped"
         except SearchStopped as stop:
+            self.stopped = True
             ending = str(stop)
         assert self.best is not None
         return self.best, ending
+
+    def trial(self, position: Array) -> Candidate:
+        """Evaluate one more position, outside of any generation.
+
+        Parameters
+        ----------
+        position : (n_variables,) array
+            The position.
+
+        Returns
+        -------
+        Candidate
+            What is there; it is the best one from now on if it is better.
+        """
+        (candidate,) = self._evaluate([position])
+        self._count(candidate)
+        return candidate
 
     def _scipy_run(
         self, population: Array, max_generations: int, options: dict[str, Any]
