@@ -25,9 +25,8 @@ def problem(meshes, small, polars, problem_of):
     def problem(kind, num_nodes, values, **options):
         options = {"n_blades": 2, "fidelity": small, "polars": polars, **options}
         prob = problem_of(kind(num_nodes=num_nodes, **options), **values)
-        for name in {"lattice_nodes", "diameter", "section_polars"} & set(
-            prob.model.comp.get_io_metadata(iotypes="input")
-        ):
+        of_blade = {"lattice_nodes", "diameter", "section_polars", "section_thickness"}
+        for name in of_blade & set(prob.model.comp.get_io_metadata(iotypes="input")):
             prob.set_val(name, meshes.get_val(name))
         prob.run_model()
         return prob

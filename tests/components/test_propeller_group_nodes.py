@@ -43,7 +43,13 @@ def outputs(prob):
     return {meta["prom_name"] for meta in metadata.values()}
 
 
-BLADE = {"lattice_nodes", "surface_nodes", "section_polars", "band_frequency"}
+BLADE = {
+    "lattice_nodes",
+    "surface_nodes",
+    "section_polars",
+    "section_thickness",
+    "band_frequency",
+}
 
 
 @pytest.mark.parametrize("trim", ["thrust", "rpm"])
