@@ -78,8 +78,9 @@ def analyze(
     **asked
         Single values: rpm, thrust [N], speed [m/s], density [kg/m^3] and the rest of the air;
         twist_offset_deg, chord_factor, diameter, n_blades; viscous, stall_delay, n_crit,
-        trip_upper, trip_lower, measured_drag, broadband, trip, fidelity; observers, (n, 3)
-        positions [m] as `propmdao.arc` makes them, surroundings.
+        trip_upper, trip_lower, measured_drag, elastic, youngs_modulus, shear_modulus [Pa],
+        material_density [kg/m^3], broadband, trip, fidelity; observers, (n, 3) positions [m] as
+        `propmdao.arc` makes them, surroundings.
 
     Returns
     -------
@@ -89,7 +90,8 @@ def analyze(
     Raises
     ------
     ValueError
-        Bad input, in one line; `TrimError` among them when the thrust is out of reach within
+        Bad input, in one line; `ElasticError` among them when a blade does not stand its loads or
+        its material is not known, `TrimError` when the thrust is out of reach within
         `rotation_bounds`, and `NotFiniteError` when a result would be no number: nothing could be
         done with it, while one that has not converged is there to be looked at.
     """

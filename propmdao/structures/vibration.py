@@ -34,7 +34,8 @@ def natural_frequencies(
     Returns
     -------
     (4 N_SHAPES,) array
-        Frequencies [rad/s], rising; the higher half is no more than a bound.
+        Frequencies [rad/s], rising; 0 for each way in which the blade does not stand, and the
+        higher half is no more than a bound.
 
     Raises
     ------

@@ -37,6 +37,7 @@ from propmdao.propeller.airfoils.airfoil import Airfoil, naca4
 from propmdao.propeller.airfoils.contours import AirfoilFrameWarning
 from propmdao.propeller.airfoils.coordinates import airfoil_from_coordinates
 from propmdao.records.models import Transition
+from propmdao.runtime.output_files import replacing
 
 FILES = ("uiuc_lsat_drag.csv", "soartech8_drag.csv")
 #: Names in AeroSandbox's database where they are not the measured model's in small letters.
@@ -286,6 +287,7 @@ def main() -> None:
         for name, (a, b) in REYNOLDS_BANDS.items()
     }
     from propmdao.figures import sections
+    from propmdao.figures.style import save
 
     figure = sections.drag_ratios(
         points.cl, groups,
