@@ -32,7 +32,7 @@ from propmdao.records.models import (
 )
 from propmdao.records.states import OperatingPoint
 
-PROPELLER = "apcsf_11x4.7"
+PROPELLER = "apcsf_11x4.7_uiuc"
 POLAR = "\n".join(
     [" Mach = 0.000  Re = 0.100 e 6  Ncrit = 9.000", " alpha CL CD CDp CM", " --- --- ---"]
     + [f"{a} {0.1 * a + 0.3:.3f} 0.0200 0.0100 -0.0500" for a in range(-10, 13)]
@@ -244,7 +244,7 @@ def test_what_was_assumed_about_a_propeller_file_is_one_line(
         (f"analyze {PROPELLER} --rpm 4000 --polar e63 no_such.txt", "no_such.txt"),
         (f"analyze {PROPELLER} --rpm 4000 --polar e63 a.c81 b.c81", "a C81 file stands alone"),
         (f"analyze {PROPELLER} --rpm 4000 --inviscid --no-stall-delay", "do not go along"),
-        ("analyze apcsf_11x47 --rpm 4000", PROPELLER),
+        ("analyze apcsf_11x47 --rpm 4000", "near: apcsf_11x4.7"),
         ("analyze no_such_file.toml --rpm 4000", "no_such_file.toml"),
     ],
 )
