@@ -28,7 +28,8 @@ TOLERANCES = {
     "thickness_over_chord": 5e-4,
 }  # fmt: skip
 DIGITS = {"c_over_R": 5, "beta_deg": 3, "sweep_over_R": 5, "rake_over_R": 5,
-          "thickness_over_chord": 4, "camber_over_chord": 5, "r_over_R": 5}  # fmt: skip
+          "thickness_over_chord": 4, "camber_over_chord": 5, "r_over_R": 5,
+          "area_over_c2": 4}  # fmt: skip
 #: Outside this the blade has next to no chord, and its angle and offsets count for nothing.
 LAST = 0.995
 
@@ -63,7 +64,12 @@ def main(file: str, name: str, source: str) -> None:
     }
     airfoils = [(round(position, 4), airfoil) for position, airfoil in whole.airfoils]
     entry = dataclasses.replace(
-        whole, diameter=round(whole.diameter, 7), airfoils=airfoils, source=source, **rounded
+        whole,
+        diameter=round(whole.diameter, 7),
+        youngs_modulus=whole.youngs_modulus and float(f"{whole.youngs_modulus:.4g}"),
+        airfoils=airfoils,
+        source=source,
+        **rounded,
     )
     write_toml(CATALOGUE / f"{name}.toml", entry)
     print(f"{name}: {len(kept)} of {whole.r_over_R.size} stations")

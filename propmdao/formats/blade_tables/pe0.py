@@ -95,7 +95,8 @@ def propeller_of_table(table: Pe0Table, name: str) -> Propeller:
     -------
     Propeller
         The propeller: blade angle of the chord line, sweep of the quarter chord from SWEEP, rake
-        of the quarter chord from ZHIGH, at the stations of the table.
+        of the quarter chord from ZHIGH, at the stations of the table; material and cross-sections
+        for elastic blades.
 
     Raises
     ------
@@ -119,6 +120,12 @@ def propeller_of_table(table: Pe0Table, name: str) -> Propeller:
     ahead, height = np.transpose(
         [section.quarter_chord(angle) for section, angle in zip(sections, beta, strict=True)]
     )
+    # The same row has no cross-section; the last one before it stands for it.
+    area = np.interp(
+        table.radius,
+        table.radius[~closing],
+        table.cross_section[~closing] / table.chord[~closing] ** 2,
+    )
     scaled = any(airfoil in _ALL_ORDINATES_SCALED for _, airfoil in airfoils)
     return Propeller(
         name=name,
@@ -132,6 +139,9 @@ def propeller_of_table(table: Pe0Table, name: str) -> Propeller:
         sweep_over_R=-ahead / tip,
         rake_over_R=height / tip,
         camber_over_chord=np.array([s.camber.max() for s in sections]) if scaled else None,
+        area_over_c2=area,
+        youngs_modulus=table.modulus,
+        material_density=table.density,
         source=f"the maker's table, {table.title}: chord, twist, thickness, sweep, height, "
         "airfoils; blade angle of the chord line from TWIST, PRATHER and the sections' shape",
     )

@@ -124,6 +124,10 @@ def test_a_blade_with_sharp_edges_comes_back(tmp_path: Path, rows: list[list[flo
         np.testing.assert_allclose(getattr(read, key), getattr(MADE, key), atol=1e-5)
     for key in ("sweep_over_R", "rake_over_R"):
         np.testing.assert_allclose(getattr(read, key), getattr(MADE, key), atol=2e-4)
+    areas = 0.7 * np.array(MADE.thickness_over_chord)
+    np.testing.assert_allclose(read.area_over_c2, areas, rtol=1e-3)
+    assert read.youngs_modulus == pytest.approx(2.7e6 * 6894.757)  # psi
+    assert read.material_density == pytest.approx(1700.0)
 
 
 def test_the_row_that_closes_the_tip_has_no_section(
@@ -136,6 +140,7 @@ def test_the_row_that_closes_the_tip_has_no_section(
     assert read.c_over_R[-1] == 0.005
     steeper = read.beta_deg - [row[7] for row in rows]
     assert steeper[-1] == pytest.approx(steeper[-2], abs=1e-5)
+    assert read.area_over_c2[-1] == read.area_over_c2[-2]
 
 
 def test_all_ordinates_of_clark_y_are_scaled(tmp_path: Path, rows: list[list[float]]) -> None:
