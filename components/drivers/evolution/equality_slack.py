@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from propmdao.components.drivers.evaluation.candidate import Array, Candidate
 
 SHARE_OF_GENERATIONS = 0.6  # in which the slack shrinks to nothing
-POWER = 5.0
+POWER = 2.0
 FIRST_SHARE = 0.2  # of the first population meets an equality with its first slack
 
 

@@ -47,6 +47,17 @@ def test_equalities_are_met_at_the_optimum(
     assert " and polished by " in prob.driver.message
 
 
+@pytest.mark.parametrize("seed", [1, 2])
+def test_two_equalities_of_five_variables_without_polishing(problem, seed):
+    """Feasible, which takes a slack that shrinks slowly enough; the optimum is 0."""
+    prob = problem(
+        two_equalities, [-3.0] * 5, [3.0] * 5, n_g=2, constraint={"equals": 0.0}, seed=seed,
+    )  # fmt: skip
+    assert prob.run_driver().success
+    assert_allclose(prob.get_val("g"), 0.0, atol=1.01e-4)
+    assert prob.get_val("f")[0] < 0.5
+
+
 class Scaled(om.ExplicitComponent):
     """Quadratic in two angles; it fails where the first is below -0.4 rad."""
 
