@@ -15,7 +15,7 @@ def low_noise() -> om.Problem:
     prob.model.add_subsystem(
         "propeller",
         PropellerGroup(
-            propeller="apcsf_11x4.7",
+            propeller="apcsf_11x4.7_uiuc",
             observers=pm.arc(1.905, -45.0),
             design_distributions={"beta": three_points, "chord_over_R": three_points},
             control="values",

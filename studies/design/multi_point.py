@@ -89,7 +89,7 @@ def show(prob: om.Problem, title: str) -> None:
 def main() -> None:
     """Optimise and print both blades."""
     parser = argparse.ArgumentParser(description=__doc__.split("\n\n")[0])
-    parser.add_argument("propeller", nargs="?", default="apcsf_11x4.7", help="%(default)s")
+    parser.add_argument("propeller", nargs="?", default="apcsf_11x4.7_uiuc", help="%(default)s")
     prob = multi_point(pm.load_propeller(parser.parse_args().propeller))
     show(prob, "start")
     result = prob.run_driver()

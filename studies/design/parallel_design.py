@@ -30,7 +30,7 @@ from propmdao.components import DifferentialEvolutionDriver, PropellerGroup
 from propmdao.runtime.locks import InUseError
 from propmdao.runtime.worker_processes import start_workers, use_one_thread
 
-PROPELLER = pm.load_propeller("apcsf_11x4.7")
+PROPELLER = pm.load_propeller("apcsf_11x4.7_uiuc")
 STATIONS = [0.15, 0.4, 0.7, 1.0]  # r/R of the control points
 COARSE = pm.Fidelity(n_chordwise=4, n_spanwise=12, n_contour=21, n_surface_span=20, n_harmonics=4)
 

@@ -73,9 +73,9 @@ def test_tripped_blades_without_broadband_noise_are_an_error(problem):
 
 def test_a_propeller_is_described_or_found_by_its_name_or_file(problem, propeller, tmp_path):
     file = tmp_path / "blade.toml"
-    file.write_text(propeller_file("apcsf_11x4.7").read_text("utf-8"), "utf-8")
+    file.write_text(propeller_file("apcsf_11x4.7_uiuc").read_text("utf-8"), "utf-8")
     torque = []
-    for described in (propeller, "apcsf_11x4.7", file, str(file)):
+    for described in (propeller, "apcsf_11x4.7_uiuc", file, str(file)):
         prob = problem(propeller=described)
         prob.setup()
         prob.run_model()

@@ -17,7 +17,7 @@ def study(import_study: Callable[[str], ModuleType]) -> ModuleType:
 
 
 def test_the_blade_is_quieter_on_average_at_no_more_torque(study, coarsest, capsys):
-    prob = study.multi_point(load_propeller("apcsf_11x4.7"), coarsest)
+    prob = study.multi_point(load_propeller("apcsf_11x4.7_uiuc"), coarsest)
     start, limit = prob.get_val("level")[0], prob.get_val("torque").copy()
     levels = prob.get_val("oaspl_total_dba")
     assert levels.min() < start < levels.max()
