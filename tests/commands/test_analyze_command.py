@@ -107,7 +107,7 @@ def test_transition_is_of_the_polars_and_is_said(
     recorder: Any, capsys: pytest.CaptureFixture[str]
 ) -> None:
     for given in ([], ["--n-crit", "9"], ["--trip-upper", "0.05", "--trip-lower", "0.05"]):
-        assert main(["analyze", PROPELLER, "--rpm", "4000", *given]) == 0
+        assert main(["analyze", PROPELLER, "--rpm", "4000", "--computed-drag", *given]) == 0
     asked = [request.model.loads.transition for request in recorder.asked]
     assert asked == [Transition(), Transition(9.0), Transition(None, 0.05, 0.05)]
     drag = [np.asarray(polars.values[..., 1, :, :]).mean() for polars in recorder.polars]

@@ -135,7 +135,9 @@ def _source(
             f"installed: pip install 'propmdao[polars]', or take the catalogue's n_crit {low:g} to "
             f"{high:g} without trips, or {SHIPPED_TRIPPED}"
         )
-    catalogue, neuralfoil = (f"{by}, {transition}{level}" for by in ("catalogue", "NeuralFoil"))
+    catalogue, neuralfoil = (
+        f"{origin}, {transition}{level}" for origin in ("catalogue", "NeuralFoil")
+    )
     plain = _catalogue_shape(name)
     if plain is not None:
         return PolarSource(plain, catalogue if shipped else neuralfoil)
