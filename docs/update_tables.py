@@ -3,8 +3,7 @@
 Run it from the repository: ``python docs/update_tables.py``, or with the names of some tables, or
 with what several begin with: ``gradient``. Each table stands between two comment lines that name
 it; the text around them is written by hand. All of them take more than half an hour, most of it for
-searches and smoothness (`gradient_tables.py`); the sensitivities need NeuralFoil (the extra
-``polars``).
+searches and smoothness (`gradient_tables.py`).
 """
 
 from __future__ import annotations
@@ -174,17 +173,15 @@ def run_4003() -> Rows:
 def sensitivity(case: str) -> Rows:
     """Errors of a propeller with one thing changed at a time."""
     study = aerodynamic_sensitivity
-    if not study.neuralfoil_tables.neuralfoil_installed():
-        raise SystemExit("n_crit takes NeuralFoil: pip install 'propmdao[polars]'")
     tunnel = study.chosen(aerodynamic_validation.measurements(case))
-    return _formatted(study.sensitivities(case, tunnel, with_n_crit=True), study.FORMATS)
+    return _formatted(study.sensitivities(case, tunnel), study.FORMATS)
 
 
 def twist_needed() -> Rows:
     """Twist offset for the measured CT in hover, and the error of CP with it."""
     rows: Rows = [("propeller", "rpm", "J", "twist for the measured CT, deg", "error of CP, %")]
     study = aerodynamic_sensitivity
-    for case in study.PITCH:
+    for case in study.CASES:
         tunnel = study.chosen(aerodynamic_validation.measurements(case))
         for part in (tunnel.static, tunnel.dynamic[tunnel.dynamic.J <= 0.5]):
             for rpm, j, twist, cp in zip(
@@ -203,8 +200,9 @@ def design_point() -> Rows:
     """The thesis' design point: 8 m/s, 4200 rpm."""
 
     def with_sections(airfoil: str) -> pm.Propeller:
+        photographed = pm.load_propeller("apcsf_11x4.7_uiuc")  # as the thesis has it
         return dataclasses.replace(
-            SLOW_FLYER, airfoils=((0.15, airfoil),), thickness_over_chord=None
+            photographed, airfoils=((0.15, airfoil),), thickness_over_chord=None
         )
 
     rows: Rows = [("sections", "flow", "T, N", "CT", "CQ", "thickness tone, dB")]

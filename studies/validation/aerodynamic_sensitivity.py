@@ -18,7 +18,6 @@ import numpy as np
 from aerodynamic_validation import measurements, show, write_csv
 
 import propmdao as pm
-from propmdao.aerodynamics.sections.polars import neuralfoil_tables
 from propmdao.analysis.wind_tunnel import (
     Evaluate,
     Points,
@@ -32,9 +31,8 @@ from propmdao.analysis.wind_tunnel import (
 from propmdao.figures import comparisons
 from propmdao.figures.style import save
 
-PITCH = {"apcsf_11x4.7": 0.11938, "apce_10x7": 0.1778}  # m, the maker's: 4.7 and 7 in
-OUTBOARD = 0.55  # r/R from which the maker's table of the sister 10x7SF has its nominal pitch
-N_CRIT = (1.0, 9.0)  # beside the catalogue's 5: dirty and clean air
+CASES = ("apcsf_11x4.7", "apce_10x7")
+N_CRIT = (3.0, 9.0)  # beside the default 5: dirty and clean air
 FORMATS = {"changed": "", "static CT": "+.1f", "static CP": "+.1f", "CT to J 0.5": "+.1f",
            "CP to J 0.5": "+.1f", "trend": ".2f", "twist": "+.2f", "then CT": "+.1f",
            "then CP": "+.1f"}  # fmt: skip
@@ -45,17 +43,15 @@ def chosen(tunnel: WindTunnel) -> WindTunnel:
     return dataclasses.replace(tunnel, static=tunnel.static[::3], dynamic=tunnel.dynamic[::6])
 
 
-def variants(
-    propeller: pm.Propeller, with_n_crit: bool
-) -> Iterator[tuple[str, pm.Propeller, Evaluate]]:
+def variants(propeller: pm.Propeller) -> Iterator[tuple[str, pm.Propeller, Evaluate]]:
     """The propeller with one thing changed, and how it is analysed."""
     change = partial(dataclasses.replace, propeller)
-    beta, r = propeller.beta_deg, propeller.r_over_R
+    beta = propeller.beta_deg
     yield "nothing", propeller, computed
     yield "twist +1 deg", change(beta_deg=beta + 1.0), computed
     yield "twist -1 deg", change(beta_deg=beta - 1.0), computed
-    nominal = np.degrees(np.arctan(PITCH[propeller.name] / (np.pi * propeller.diameter * r)))
-    yield "nominal pitch outboard", change(beta_deg=np.where(r < OUTBOARD, beta, nominal)), computed
+    yield "photographed geometry", pm.load_propeller(f"{propeller.name}_uiuc"), computed
+    yield "no sweep, no rake", change(sweep_over_R=0.0, rake_over_R=0.0), computed
     for label, airfoils in {
         "E63 to Clark-Y": ((0.15, "e63"), (1.0, "clarky")),
         "E63": ((0.15, "e63"),),
@@ -66,7 +62,8 @@ def variants(
     if propeller.name == "apcsf_11x4.7":
         yield "sections of the thesis", pm.load_propeller("apcsf_11x4.7_thesis"), computed
     yield "no stall delay", propeller, partial(computed, stall_delay=False)
-    for n_crit in N_CRIT if with_n_crit else ():
+    yield "drag as computed", propeller, partial(computed, measured_drag=False)
+    for n_crit in N_CRIT:
         yield f"n_crit {n_crit:g}", propeller, partial(computed, n_crit=n_crit)
     law = pm.WakeLaw()
     for factor in (0.75, 1.5):
@@ -78,11 +75,11 @@ def variants(
         yield f"drift of the wake x {factor:g}", propeller, partial(computed, wake=wake)
 
 
-def sensitivities(case: str, tunnel: WindTunnel, with_n_crit: bool) -> list[dict[str, Any]]:
+def sensitivities(case: str, tunnel: WindTunnel) -> list[dict[str, Any]]:
     """Mean errors of every variant in per cent; then with its own twist of zero thrust."""
     rows, propeller = [], pm.load_propeller(case)
     zero = zero_thrust(measurements(case).dynamic)
-    for label, blade, evaluate in variants(propeller, with_n_crit):
+    for label, blade, evaluate in variants(propeller):
         twist = zero_thrust_twist_deg(blade, zero, evaluate)
         published, turned = (
             _mean(tunnel, evaluate(blade, tunnel.static, offset),
@@ -124,18 +121,15 @@ def fits_over_rpm(rpm: np.ndarray, twist: np.ndarray) -> str:
 def main() -> None:
     """Vary, print the tables, write the files."""
     parser = argparse.ArgumentParser(description=__doc__.split("\n\n")[0])
-    parser.add_argument("--quick", action="store_true", help="a few points, without n_crit")
+    parser.add_argument("--quick", action="store_true", help="a few points")
     parser.add_argument("--output", type=Path, default="results/aerodynamic_sensitivity",
                         help="folder, default %(default)s")  # fmt: skip
     options = parser.parse_args()
     output = options.output.absolute()
     output.mkdir(parents=True, exist_ok=True)
-    with_n_crit = not options.quick and neuralfoil_tables.neuralfoil_installed()
-    if not with_n_crit:
-        print("n_crit is left out: it takes NeuralFoil, pip install 'propmdao[polars]', a while")
-    for case in PITCH:
+    for case in CASES:
         tunnel = measurements(case, quick=True) if options.quick else chosen(measurements(case))
-        rows = sensitivities(case, tunnel, with_n_crit)
+        rows = sensitivities(case, tunnel)
         write_csv(output / f"{case}.csv", [dict.fromkeys(FORMATS, "") | row for row in rows])
         print(f"\n{case}: mean errors in %; then with the twist of zero thrust [deg]")
         show(rows, FORMATS)

@@ -42,7 +42,7 @@ _LOW_REYNOLDS, _HIGH_REYNOLDS = (2.0e4, 6.0e4), (2.0e5, 1.0e6)
 _LARGEST_LOGARITHM = np.log(2.0)
 # The correction grows over this lift coefficient from zero lift, where there is none.
 _LIFT = 0.3
-# It fades over the last tenth of the lift at stall: stalled drag is no bubble's, and up to there the
+# It fades over the last tenth of the lift at stall: stalled drag is no bubble's. Up to there the
 # measured sections ask for it (from 0.8 on they would have 5 to 8 % more drag left than below).
 _STALL = (0.9, 1.0)
 # Stall is within 20 deg; on the other side it is the first below -4 deg.
