@@ -5,7 +5,7 @@ the errors found; each is held from both sides, so that a change for the better 
 Aimed at, as published: static CT 8 %, static CP 12 %, CT to J 0.5 8 %; calibrated, to J 0.5: CT
 2.5 %, CP 8 %; slope of static CT over rotation speed at least half the measured one. The slow
 flyers meet the calibrated ones and the slope, and miss those of the published geometry;
-docs/verification.md says what limits them.
+docs/verification.md says what limits them. Names without _uiuc are of the maker's geometry.
 """
 
 import dataclasses
@@ -29,6 +29,9 @@ MEASURED = Path(__file__).parents[2] / "studies" / "validation" / "measurements"
 # Mean absolute errors in per cent: static CT, CP of each point; CT, CP to J 0.5 and beyond of the
 # static coefficient; ratio of the slopes of static CT. The twist offset in degrees.
 PUBLISHED = {
+    "apcsf_11x4.7": ((7.3, 11.8), (12.0, 12.6), (10.1, 21.2), 0.62),
+    "apcsf_10x4.7": ((4.1, 10.0), (9.3, 10.7), (14.2, 18.8), 0.56),
+    "apce_10x7": ((12.2, 7.9), (3.4, 1.6), (6.7, 6.2), 1.29),
     "apcsf_11x4.7_uiuc": ((13.7, 19.3), (20.0, 19.9), (15.0, 23.2), 0.56),
     "apcsf_11x4.7_thesis": ((18.3, 25.5), (22.5, 30.2), (14.0, 48.8), 0.48),
     "apcsf_10x4.7_uiuc": ((12.1, 19.1), (17.8, 19.6), (22.1, 26.1), 0.50),
