@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import dataclasses
 
+import jax.numpy as jnp
+
 from propmdao.records.air import Air
 from propmdao.records.pytrees import Scalar, record
 from propmdao.records.quantities import require_asked
@@ -19,19 +21,33 @@ class RotorState:
     rotation_speed : scalar
         Rotation speed about +z [rad/s].
     speed : scalar
-        Axial flight speed, 0 is hover [m/s].
+        Flight speed, 0 is hover [m/s].
     air : Air
         The undisturbed air.
+    incidence : scalar
+        Angle between the shaft (+z) and the direction of flight, which lies in the plane of +z and
+        +x: 0 is axial flight, pi/2 edgewise [rad].
     """
 
     rotation_speed: Scalar
     speed: Scalar
     air: Air
+    incidence: Scalar = 0.0
 
     @property
     def mach(self) -> Scalar:
         """Mach number of the flight."""
         return self.speed / self.air.sound_speed
+
+    @property
+    def axial_speed(self) -> Scalar:
+        """Part of the flight speed along the shaft [m/s]."""
+        return self.speed * jnp.cos(self.incidence)
+
+    @property
+    def edgewise_speed(self) -> Scalar:
+        """Part of the flight speed in the plane of the rotor, along +x [m/s]."""
+        return self.speed * jnp.sin(self.incidence)
 
     def turning(self, rotation_speed: Scalar) -> RotorState:
         """The same flight at another rotation speed [rad/s]."""

@@ -32,7 +32,7 @@ from propmdao.aerodynamics.solutions.result import (
     strip_loads,
 )
 from propmdao.aerodynamics.solutions.roots import at_root, decreasing_root
-from propmdao.aerodynamics.vortices.cores import core_radius
+from propmdao.aerodynamics.vortices.cores import core_radius, middles
 from propmdao.aerodynamics.wakes.helical import helical_wake
 from propmdao.aerodynamics.wakes.momentum import momentum_induced_velocity
 from propmdao.records.loads import PointLoads
@@ -124,7 +124,7 @@ def loads_at(flow: AxialFlow, induced_velocity: Scalar) -> LatticeLoads:
     rotor, state = case.rotor, case.state
     wake = helical_wake(lattice.rings.corner[-1], case.wake, rotor, state, induced_velocity)
     core = core_radius(
-        jnp.asarray(case.wake.ages),
+        middles(jnp.asarray(case.wake.ages)),
         state.rotation_speed,
         state.air.kinematic_viscosity,
         BOUND_CORE * rotor.radius,

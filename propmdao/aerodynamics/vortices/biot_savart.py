@@ -172,3 +172,54 @@ def filament_velocities(points: Array, nodes: Array, core_radius: Array) -> Arra
         return _moments(a, b) @ _kernel(p, a, b, _core4(a, b, core))
 
     return _velocity(p, jnp.moveaxis(jax.lax.map(filament, nodes), 1, 0))
+
+
+def segment_normalwash(
+    points: Array, normals: Array, start: Array, end: Array, core_radius: Array
+) -> Array:
+    """Compute the velocity of each segment of unit circulation along the normal at each point.
+
+    Parameters
+    ----------
+    points, normals : (n_points, 3) arrays
+        Points [m], and unit vectors along which the velocity is wanted.
+    start, end : (n_segments, 3) arrays
+        Ends of the segments [m]; circulation is positive from start to end.
+    core_radius : (n_segments,) array
+        Vortex core radius, positive [m].
+
+    Returns
+    -------
+    (n_segments, n_points) array
+        Normal velocity per unit circulation [1/m].
+    """
+    p, a, b = points.T, start.T, end.T
+    # (P x M + C).n = M.(n x P) + C.n: a matrix product, as the sums over segments are.
+    arms = jnp.concatenate([jnp.cross(normals, points).T, normals.T])
+    return (_moments(a, b).T @ arms) * _kernel(p, a, b, _core4(a, b, core_radius))
+
+
+def summed_velocities(
+    points: Array, start: Array, end: Array, core_radius: Array, circulation: Array
+) -> Array:
+    """Compute the velocity of segments of known circulation at each point.
+
+    Parameters
+    ----------
+    points : (n_points, 3) array
+        Points at which the velocity is wanted [m].
+    start, end : (n_segments, 3) arrays
+        Ends of the segments [m].
+    core_radius : (n_segments,) array
+        Vortex core radius, positive [m].
+    circulation : (n_segments,) array
+        Circulation, positive from start to end [m^2/s].
+
+    Returns
+    -------
+    (3, n_points) array
+        Velocity [m/s].
+    """
+    p, a, b = points.T, start.T, end.T
+    moments = circulation * _moments(a, b)
+    return _velocity(p, moments @ _kernel(p, a, b, _core4(a, b, core_radius)))
