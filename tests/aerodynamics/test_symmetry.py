@@ -33,7 +33,10 @@ def test_one_blade_for_all_is_all_blades_solved(slow_flyer):
         for b in range(B)
     ]
     core = core_radius(
-        middles(jnp.asarray(case.wake.ages)), OMEGA, case.state.air.kinematic_viscosity, 1e-4 * radius
+        middles(jnp.asarray(case.wake.ages)),
+        OMEGA,
+        case.state.air.kinematic_viscosity,
+        1e-4 * radius,
     )
     rows = []
     for felt in rings:

@@ -28,9 +28,9 @@ from propmdao.aerodynamics.sections.recambering import SectionStates
 from propmdao.records.pytrees import record
 
 _TOLERANCE = 1.0e-9  # in the lift coefficient
-_MAX_STEPS = 60
-_LONGEST_STEP = np.radians(8.0)
-_FRACTIONS = 0.5 ** np.arange(9)
+_MAX_STEPS = 100
+_LONGEST_STEP = np.radians(15.0)
+_FIRST_TIME = 3.0  # of the pseudo-time, in units of the time in which a thin section settles
 # Share of the tangential speed at which lattice and motion count half each for the angle of attack,
 # and half of the width over which one takes over from the other.
 _REVERSED, _BLEND = 0.2, 0.1
@@ -129,8 +129,12 @@ def period_states(
 def solve_period_recambering(flow: PeriodFlow, laws: SectionLaws) -> Array:
     """Recambering that brings lattice and polars to the same lift at every azimuth.
 
-    Damped Newton steps from no recambering, so that the answer does not depend on what was computed
-    before. Derivatives are those of the implicit function.
+    Newton's method in pseudo-time: as if every recambering moved towards its root at the rate of a
+    thin section, dx/dt = -R / (2 pi), in implicit steps that grow as the residual falls (switched
+    evolution relaxation of Mulder and van Leer, J. Comput. Phys. 59, 1985). Past stall, plain Newton
+    steps and those of a line search end in circles, for the residual has minima that are no roots.
+    It begins at no recambering, so that the answer does not depend on what was computed before.
+    Derivatives are those of the implicit function.
 
     Parameters
     ----------
@@ -147,26 +151,32 @@ def solve_period_recambering(flow: PeriodFlow, laws: SectionLaws) -> Array:
     """
     fixed_flow, fixed_laws = jax.lax.stop_gradient((flow, laws))
     shape = flow.circulation.shape
-    fractions = jnp.asarray(_FRACTIONS)[:, None, None]
+    # Where the air hardly moves, lift coefficients are large and recambering does little: residuals
+    # count by circulation, and no step is too long where the angle is not that of the lattice.
+    speed = fixed_flow.relative_speed
+    weight = speed / speed.mean(axis=0)
+    longest = _LONGEST_STEP / jnp.maximum(fixed_flow.attached, _LONGEST_STEP / 1.0e6)
+
+    def norm(missing: Array) -> Array:
+        return jnp.sqrt(((weight * missing) ** 2).mean())
 
     def unfinished(state: _Newton) -> Array:
-        return (state.n_trials < _MAX_STEPS) & (jnp.abs(state.missing).max() > _TOLERANCE)
+        largest = jnp.abs(weight * state.missing).max()
+        return (state.n_trials < _MAX_STEPS) & ~(largest <= _TOLERANCE)
 
     def step(state: _Newton) -> _Newton:
-        delta = state.recambering
-        missing, slope = _residual_and_slope(fixed_flow, fixed_laws, delta)
-        newton = -jnp.linalg.solve(slope, missing.ravel()).reshape(shape)
+        time = _FIRST_TIME * norm(first) / norm(state.missing)
+        inertia = 2.0 * jnp.pi / time * jnp.diag(fixed_flow.attached.ravel())
+        change = jnp.linalg.solve(state.slope + inertia, state.missing.ravel()).reshape(shape)
         # Each strip by itself: one that has just stalled holds up no other.
-        newton = jnp.clip(newton, -_LONGEST_STEP, _LONGEST_STEP)
-        trials = delta + fractions * newton
-        squares = jax.vmap(lambda trial: (_residual(fixed_flow, fixed_laws, trial) ** 2).sum())
-        best = jnp.argmin(squares(trials))
-        settled = jnp.abs(missing).max() <= _TOLERANCE
-        return _Newton(state.n_trials + 1, jnp.where(settled, delta, trials[best]), missing, slope)
+        delta = state.recambering - jnp.clip(change, -longest, longest)
+        return _Newton(
+            state.n_trials + 1, delta, *_residual_and_slope(fixed_flow, fixed_laws, delta)
+        )
 
-    n = flow.circulation.size
-    start = _Newton(0, jnp.zeros(shape), jnp.full(shape, jnp.inf), jnp.eye(n))
-    end = jax.lax.while_loop(unfinished, step, start)
+    none = jnp.zeros(shape)
+    first, slope = _residual_and_slope(fixed_flow, fixed_laws, none)
+    end = jax.lax.while_loop(unfinished, step, _Newton(0, none, first, slope))
     # One more Newton step, in which alone the arguments count: its slope is that of the solution.
     delta, slope = jax.lax.stop_gradient((end.recambering, end.slope))
     missing = _residual(flow, laws, delta)

@@ -20,6 +20,7 @@ from propmdao.aerodynamics.rotor_geometry import RotorGeometry
 from propmdao.aerodynamics.solutions.lattice_loads import LatticeGeometry, lattice_geometry
 from propmdao.aerodynamics.vortices.biot_savart import segment_normalwash, summed_velocities
 from propmdao.aerodynamics.wakes.history import history_weights
+from propmdao.geometry.lattice import strip_middle
 from propmdao.records.pytrees import record
 
 
@@ -34,13 +35,17 @@ class PeriodLattice:
     influence : (n_blades, 3, n_panels, n_points) array
         Velocity at the lattice's points per unit circulation of the rings of each blade [1/m].
     ring_area, ring_middle : (n_panels, 3) arrays
-        Vector area of the rings, toward the suction side [m^2], and the middle of their corners [m].
+        Vector area of the rings as far as the trailing edge, toward the suction side [m^2], and the
+        middle of their corners [m].
+    last_panel : (ns,) array
+        Chordwise length of the last panels [m].
     """
 
     lattice: LatticeGeometry
     influence: Array
     ring_area: Array
     ring_middle: Array
+    last_panel: Array
 
 
 @record
@@ -55,6 +60,8 @@ class PeriodWake:
         Sideways displacement at each azimuth [m].
     ages : (n_nodes,) array
         Azimuths of the nodes behind their blade [rad].
+    delay : (ns,) array
+        Azimuth by which the circulation of each strip's wake is older than its nodes [rad].
     trailing_core, shed_core : (n_nodes - 1,) arrays
         Core radius of the segments along the filaments, and across them at their younger end [m].
     """
@@ -62,13 +69,14 @@ class PeriodWake:
     nodes: Array
     drift: Array
     ages: Array
+    delay: Array
     trailing_core: Array
     shed_core: Array
 
     @property
     def weights(self) -> tuple[Array, Array]:
-        """Weights of `history_weights`, trailing and shed: (n_blades * (n_nodes - 1), N) each."""
-        return history_weights(self.ages, self.drift.shape[0], self.nodes.shape[1])
+        """Weights of `history_weights`, of rings and shed segments."""
+        return history_weights(self.ages, self.delay, self.drift.shape[0], self.nodes.shape[1])
 
     @property
     def cores(self) -> tuple[Array, Array]:
@@ -98,7 +106,9 @@ def period_lattice(rotor: RotorGeometry) -> PeriodLattice:
 
     influence = jnp.stack([induced(azimuth) for azimuth in rotor.azimuths])
     n_panels = lattice.rings.normal.shape[0]
-    corner = lattice.rings.corner
+    # The last ring reaches into the wake, a quarter of the panel beyond the trailing edge.
+    corner, edge = lattice.rings.corner, rotor.nodes[-1:]
+    corner = jnp.concatenate([corner[:-1], edge])
     first, second = corner[1:, 1:] - corner[:-1, :-1], corner[:-1, 1:] - corner[1:, :-1]
     middle = 0.25 * (corner[1:, 1:] + corner[:-1, :-1] + corner[:-1, 1:] + corner[1:, :-1])
     return PeriodLattice(
@@ -106,7 +116,15 @@ def period_lattice(rotor: RotorGeometry) -> PeriodLattice:
         influence.reshape(rotor.n_blades, 3, n_panels, -1),
         0.5 * jnp.cross(first, second).reshape(-1, 3),
         middle.reshape(-1, 3),
+        _last_panel(rotor.nodes),
     )
+
+
+def _last_panel(nodes: Array) -> Array:
+    """Chordwise length of the last panels in the middle of their strips, (ns,) [m]."""
+    length = jnp.linalg.norm(nodes[-1] - nodes[-2], axis=-1)
+    f = jnp.asarray(strip_middle(nodes.shape[1] - 1))
+    return (1.0 - f) * length[:-1] + f * length[1:]
 
 
 def at_the_blades(of_azimuth: Array, n_blades: int) -> Array:
@@ -165,29 +183,30 @@ def wake_normalwash(lattice: LatticeGeometry, wake: PeriodWake) -> Array:
     (n_azimuths, n_azimuths, ns, n_panels) array
         Normalwash at an azimuth (first axis) per unit circulation of a strip at another [1/m].
     """
-    rings = lattice.rings
-    (trailing, shed), (trailing_core, shed_core) = wake.weights, wake.cores
-    n_azimuths = trailing.shape[1]
+    points, normals = lattice.rings.collocation, lattice.rings.normal
+    (ring, shed), (trailing_core, shed_core) = wake.weights, wake.cores
+    n_azimuths = ring.shape[-1]
 
-    # One filament at a time: the block of segments x points stays in cache. The checkpoint keeps
+    # One strip at a time: the block of segments x points stays in cache. The checkpoint keeps
     # reverse mode from storing every block.
     @jax.checkpoint
-    def of_filament(nodes: Array) -> Array:
+    def by_filament(nodes: Array) -> Array:
         start, end = nodes[:, :-1].reshape(-1, 3), nodes[:, 1:].reshape(-1, 3)
-        return trailing.T @ segment_normalwash(
-            rings.collocation, rings.normal, start, end, trailing_core
-        )
+        return segment_normalwash(points, normals, start, end, trailing_core)
 
     @jax.checkpoint
-    def across_strip(nodes: tuple[Array, Array]) -> Array:
-        start, end = (edge[:, :-1].reshape(-1, 3) for edge in nodes)
-        return shed.T @ segment_normalwash(rings.collocation, rings.normal, start, end, shed_core)
+    def of_strip(inner: Array, strip: tuple[Array, ...]) -> tuple[Array, Array]:
+        root, tip, ring, shed = strip
+        outer = by_filament(tip)
+        start, end = (edge[:, :-1].reshape(-1, 3) for edge in (root, tip))
+        across = segment_normalwash(points, normals, start, end, shed_core)
+        return outer, ring.T @ (outer - inner) + shed.T @ across
 
     def at_azimuth(place: tuple[Array, Array]) -> Array:
         number, drift = place
         nodes = wake.nodes + drift
-        filaments = jax.lax.map(of_filament, nodes)
-        later = filaments[1:] - filaments[:-1] + jax.lax.map(across_strip, (nodes[:-1], nodes[1:]))
+        strips = nodes[:-1], nodes[1:], ring, shed
+        later = jax.lax.scan(of_strip, by_filament(nodes[0]), strips)[1]
         # From so many azimuths later to the azimuth itself.
         return later.swapaxes(0, 1)[(jnp.arange(n_azimuths) - number) % n_azimuths]
 
@@ -211,8 +230,8 @@ def wake_velocities(points: Array, wake: PeriodWake, circulation: Array) -> Arra
     (n_azimuths, 3, n_points) array
         Velocity at each azimuth [m/s].
     """
-    (trailing, shed), (trailing_core, shed_core) = wake.weights, wake.cores
-    n_azimuths = trailing.shape[1]
+    (of_rings, of_shed), (trailing_core, shed_core) = wake.weights, wake.cores
+    n_azimuths = of_rings.shape[-1]
 
     @jax.checkpoint
     def of_filament(filament: tuple[Array, Array]) -> Array:
@@ -229,7 +248,8 @@ def wake_velocities(points: Array, wake: PeriodWake, circulation: Array) -> Arra
     def at_azimuth(place: tuple[Array, Array]) -> Array:
         number, drift = place
         later = circulation[(jnp.arange(n_azimuths) + number) % n_azimuths]
-        ring, change = jnp.pad(trailing @ later, ((0, 0), (1, 1))), shed @ later
+        ring, change = (jnp.einsum("scn,ns->cs", of, later) for of in (of_rings, of_shed))
+        ring = jnp.pad(ring, ((0, 0), (1, 1)))
         nodes = wake.nodes + drift
         of_filaments = jax.lax.map(of_filament, (nodes, (ring[:, :-1] - ring[:, 1:]).T))
         across = jax.lax.map(across_strip, (nodes[:-1], nodes[1:], change.T))

@@ -72,6 +72,11 @@ class PeriodOnset:
     motion_angle: Array
     turning_share: Array
 
+    @property
+    def mean_speed(self) -> Array:
+        """Mean speed of the air at the sections over the turn, (ns,) [m/s]."""
+        return self.relative_speed.mean(axis=0)
+
 
 @record
 class PeriodBladeLoads:
@@ -296,9 +301,7 @@ def _strip_circulation(
     # A recambering of 1 is a normalwash W on all panels of its strip.
     all_panels = inverse.reshape(n_blades, ns, -1, ns).sum(axis=2)
     same = jnp.zeros((n_blades, n, ns, n, ns))
-    same = same.at[:, numbers, :, numbers].set(
-        all_panels[None] * relative_speed[:, None, None, :]
-    )
+    same = same.at[:, numbers, :, numbers].set(all_panels[None] * relative_speed[:, None, None, :])
     size = n * ns
     matrix = jnp.eye(size) + by_strips.reshape(size, size)
     right = jnp.column_stack([by_onset.ravel(), summed(same).reshape(size, size)])
@@ -311,9 +314,9 @@ def _period_laws(
 ) -> SectionLaws:
     """Polars of the strips at all azimuths, with a leading axis."""
     strips = lattice.lattice.strips
-    return jax.vmap(
-        lambda speed: section_laws(strips, speed, onset.turning_share, air, sections)
-    )(onset.relative_speed)
+    return jax.vmap(lambda speed: section_laws(strips, speed, onset.turning_share, air, sections))(
+        onset.relative_speed
+    )
 
 
 def _derivative(n_azimuths: int) -> np.ndarray:

@@ -18,8 +18,6 @@ import jax.numpy as jnp
 from jax import Array
 
 from propmdao.aerodynamics.lattice.rings import BOUND_CORE
-from propmdao.aerodynamics.lattice.strips import Strips
-from propmdao.aerodynamics.sections.recambering import SectionStates
 from propmdao.aerodynamics.solutions.case import RotorCase
 from propmdao.aerodynamics.solutions.period_lattice import (
     PeriodLattice,
@@ -32,17 +30,18 @@ from propmdao.aerodynamics.solutions.period_loads import (
     period_loads,
     tilted_onset,
 )
-from propmdao.aerodynamics.solutions.result import MOST_BORROWED_LIFT, SETTLED
+from propmdao.aerodynamics.solutions.result import TiltedLoads, sections_agree
 from propmdao.aerodynamics.solutions.roots import at_root, decreasing_root
 from propmdao.aerodynamics.vortices.cores import core_radius, middles
 from propmdao.aerodynamics.wakes.helical import helical_wake
+from propmdao.aerodynamics.wakes.history import shedding_delay
 from propmdao.aerodynamics.wakes.momentum import momentum_induced_velocity
 from propmdao.aerodynamics.wakes.skewed import sideways_drift
 from propmdao.records.loads import PeriodicLoads
 from propmdao.records.pytrees import Scalar, record
 from propmdao.runtime.compilation import compiled
 
-_TOLERANCE = 1.0e-9  # relative, in the induced velocity
+_TOLERANCE = 1.0e-8  # relative, in the induced velocity
 _GUESS = 0.05  # of the tip speed
 
 
@@ -70,51 +69,6 @@ class TiltedFlow:
         """Azimuths of the period: at least those asked for, and a multiple of the blades."""
         n_blades = self.case.rotor.n_blades
         return n_blades * -(-self.case.n_azimuths // n_blades)
-
-
-@record
-class TiltedLoads:
-    """Loads of the propeller in flight at an incidence, which repeat every turn.
-
-    Attributes
-    ----------
-    thrust, torque : float
-        Mean thrust and shaft torque of all blades [N], [N m].
-    hub_force, hub_moment : (3,) arrays
-        Mean force and moment of all blades on the hub, about the rotor's centre, in the axes of the
-        rotor that do not turn: +z is the shaft, flight is in the plane of +z and +x [N], [N m].
-    blade_force, blade_moment : (n_azimuths, 3) arrays
-        The same of blade 1 at its azimuths, from 0.
-    induced_velocity : float
-        Induced velocity at the disk, which transports the wake [m/s].
-    circulation : (n_azimuths, nc, ns) array
-        Circulation of the rings of blade 1 [m^2/s].
-    point_loads : PeriodicLoads
-        Forces of blade 1 on the fluid over the azimuths, for acoustics.
-    strips : Strips
-        Sections of blade 1.
-    sections : SectionStates
-        Flow, lift and drag of the sections, (n_azimuths, ns) each.
-    attached : (n_azimuths, ns) array
-        Share of the lattice in the angle of attack: 0 where the air comes from behind.
-    converged : bool
-        Whether thrust and induced velocity agree with momentum theory, and lattice and polars on
-        the lift of every section at every azimuth.
-    """
-
-    thrust: Array
-    torque: Array
-    hub_force: Array
-    hub_moment: Array
-    blade_force: Array
-    blade_moment: Array
-    induced_velocity: Array
-    circulation: Array
-    point_loads: PeriodicLoads
-    strips: Strips
-    sections: SectionStates
-    attached: Array
-    converged: Array
 
 
 _Params = tuple[TiltedFlow, Array]  # with the thrust guessed
@@ -182,14 +136,17 @@ def loads_at(flow: TiltedFlow, induced_velocity: Scalar) -> PeriodBladeLoads:
         viscosity, initial = state.air.kinematic_viscosity, BOUND_CORE * rotor.radius
         return core_radius(at, state.rotation_speed, viscosity, initial)
 
+    onset = tilted_onset(lattice.lattice, state, induced_velocity, n)
+    step = onset.mean_speed * ages[1] / state.rotation_speed
+    delay = shedding_delay(lattice.last_panel, step) / onset.mean_speed * state.rotation_speed
     wake = PeriodWake(
         nodes=helical_wake(edge, case.wake, rotor, state, induced_velocity),
         drift=sideways_drift(ages, jnp.asarray(azimuths_of(n)), state),
         ages=ages,
+        delay=delay,
         trailing_core=core(middles(ages)),
         shed_core=core(ages[:-1]),
     )
-    onset = tilted_onset(lattice.lattice, state, induced_velocity, n)
     return period_loads(lattice, wake, onset, state.rotation_speed, state.air, case.sections)
 
 
@@ -243,9 +200,7 @@ def solve(case: RotorCase, thrust_guess: Scalar = 0.0) -> TiltedLoads:
             trial,
             jnp.where(either, -tip_speed, -0.5 * axial + 1.0e-6 * tip_speed),
             tip_speed,
-            induced_velocity(
-                flow, jnp.where(thrust_guess == 0.0, _guess(flow), thrust_guess)
-            ),
+            induced_velocity(flow, jnp.where(thrust_guess == 0.0, _guess(flow), thrust_guess)),
             _TOLERANCE,
         )
         return w, loads, None
@@ -352,8 +307,6 @@ def tilted_loads(
         | (state.edgewise_speed**2 > 0.125 * axial**2)
         | (thrust > windmilling_limit)
     )
-    settled = jnp.abs(loads.sections.residual).max() < SETTLED
-    plausible = jnp.abs(loads.sections.borrowed_lift).max() < MOST_BORROWED_LIFT
     onset = tilted_onset(flow.lattice.lattice, state, w, flow.n_azimuths)
     return TiltedLoads(
         thrust=thrust,
@@ -368,7 +321,7 @@ def tilted_loads(
         strips=flow.lattice.lattice.strips,
         sections=loads.sections,
         attached=onset.attached,
-        converged=agrees & within_momentum_theory & settled & plausible,
+        converged=agrees & within_momentum_theory & sections_agree(loads.sections),
     )
 
 
