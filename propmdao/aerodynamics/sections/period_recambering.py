@@ -4,10 +4,10 @@ The equations are those of `recambering`, of every strip at every azimuth, solve
 wake each strip acts on all others at all azimuths, and where the retreating side stalls, one
 azimuth after the other finds no solution.
 
-Where the air comes from behind, the lattice's angle alpha = Gamma / (pi c W) + alpha_0 - delta means
-nothing. There the angle follows from how the section moves and from the induced velocity at the
-disk, alpha = atan2(U_n, U_t) in the axes of its chord, which the polars know up to 180 deg, and the
-mean over the span is left out. It counts from a share U_t / W of the tangential speed below
+Where the air comes from behind, the angle alpha = Gamma / (pi c W) + alpha_0 - delta of the lattice
+means nothing. There the angle follows from how the section moves and from the induced velocity at
+the disk, alpha = atan2(U_n, U_t) in the axes of its chord, which the polars know up to 180 deg, and
+the mean over the span is left out. It counts from a share U_t / W of the tangential speed below
 `_REVERSED`, relative to that of the mean over a turn, so that axial flight never has any.
 Attached flow that changes in time needs nothing of its own: the lattice has it. Dynamic stall is
 not modelled.
@@ -131,7 +131,7 @@ def solve_period_recambering(flow: PeriodFlow, laws: SectionLaws) -> Array:
 
     Newton's method in pseudo-time: as if every recambering moved towards its root at the rate of a
     thin section, dx/dt = -R / (2 pi), in implicit steps that grow as the residual falls (switched
-    evolution relaxation of Mulder and van Leer, J. Comput. Phys. 59, 1985). Past stall, plain Newton
+    evolution relaxation, Mulder and van Leer, J. Comput. Phys. 59, 1985). Past stall, plain Newton
     steps and those of a line search end in circles, for the residual has minima that are no roots.
     It begins at no recambering, so that the answer does not depend on what was computed before.
     Derivatives are those of the implicit function.

@@ -294,7 +294,8 @@ def _strip_circulation(
     def summed(of_blade: Array) -> Array:
         """Sum over the blades of what is felt there, at the azimuths of blade 1."""
         step = n // n_blades
-        return sum(jnp.roll(of_blade[b], -step * b, axis=0) for b in range(n_blades))
+        felt = [jnp.roll(of_blade[b], -step * b, axis=0) for b in range(n_blades)]
+        return jnp.stack(felt).sum(axis=0)
 
     by_onset = summed(jnp.einsum("bsp,kp->bks", inverse, normalwash))
     by_strips = summed(jnp.einsum("bsp,kqtp->bksqt", inverse, by_wake))

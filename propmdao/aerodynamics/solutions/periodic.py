@@ -19,6 +19,7 @@ from jax import Array
 
 from propmdao.aerodynamics.lattice.rings import BOUND_CORE
 from propmdao.aerodynamics.solutions.case import RotorCase
+from propmdao.aerodynamics.solutions.lattice_loads import LatticeLoads
 from propmdao.aerodynamics.solutions.period_lattice import (
     PeriodLattice,
     PeriodWake,
@@ -30,7 +31,7 @@ from propmdao.aerodynamics.solutions.period_loads import (
     period_loads,
     tilted_onset,
 )
-from propmdao.aerodynamics.solutions.result import TiltedLoads, sections_agree
+from propmdao.aerodynamics.solutions.result import TiltedLoads, sections_agree, strip_loads
 from propmdao.aerodynamics.solutions.roots import at_root, decreasing_root
 from propmdao.aerodynamics.vortices.cores import core_radius, middles
 from propmdao.aerodynamics.wakes.helical import helical_wake
@@ -308,6 +309,7 @@ def tilted_loads(
         | (thrust > windmilling_limit)
     )
     onset = tilted_onset(flow.lattice.lattice, state, w, flow.n_azimuths)
+    strip_thrust, strip_torque = _mean_strip_loads(loads)
     return TiltedLoads(
         thrust=thrust,
         torque=-hub_moment[2],
@@ -315,6 +317,8 @@ def tilted_loads(
         hub_moment=hub_moment,
         blade_force=force,
         blade_moment=moment,
+        strip_thrust=strip_thrust,
+        strip_torque=strip_torque,
         induced_velocity=w,
         circulation=loads.circulation,
         point_loads=PeriodicLoads(loads.position, -loads.force),
@@ -322,6 +326,26 @@ def tilted_loads(
         sections=loads.sections,
         attached=onset.attached,
         converged=agrees & within_momentum_theory & sections_agree(loads.sections),
+    )
+
+
+def _mean_strip_loads(loads: PeriodBladeLoads) -> tuple[Array, Array]:
+    """Mean thrust and torque of each strip of a blade, (ns,) each."""
+    _, nc, ns = loads.circulation.shape
+    position, force = loads.position, loads.force.mean(axis=0)
+    rings, profile = slice(-ns - nc * ns, -ns), slice(-ns, None)
+    segments = slice(0, -ns - nc * ns)
+    steady = LatticeLoads(
+        loads.circulation.mean(axis=0),
+        jnp.concatenate([position[segments], position[profile]]),
+        jnp.concatenate([force[segments], force[profile]]),
+        loads.sections,
+    )
+    thrust, torque = strip_loads(steady)
+    moment = -jnp.cross(position[rings], force[rings])[:, 2]
+    return (
+        thrust + force[rings, 2].reshape(nc, ns).sum(axis=0),
+        torque + moment.reshape(nc, ns).sum(axis=0),
     )
 
 

@@ -69,6 +69,8 @@ class TiltedLoads:
         rotor that do not turn: +z is the shaft, flight is in the plane of +z and +x [N], [N m].
     blade_force, blade_moment : (n_azimuths, 3) arrays
         The same of blade 1 at its azimuths, from 0.
+    strip_thrust, strip_torque : (ns,) array
+        Mean thrust and torque of each strip of a blade [N], [N m].
     induced_velocity : float
         Induced velocity at the disk, which transports the wake [m/s].
     circulation : (n_azimuths, nc, ns) array
@@ -92,6 +94,8 @@ class TiltedLoads:
     hub_moment: Array
     blade_force: Array
     blade_moment: Array
+    strip_thrust: Array
+    strip_torque: Array
     induced_velocity: Array
     circulation: Array
     point_loads: PeriodicLoads

@@ -71,7 +71,7 @@ def _tilted_root(square: Scalar, speed: Scalar, edgewise: Scalar, floor: Scalar)
     h^2 - floor^2 / h^2 = v^2 / 4 + T / (2 rho A).
     """
     fixed = jax.lax.stop_gradient(
-        tuple(jnp.asarray(x, float) for x in (square, speed, edgewise, floor))
+        jnp.broadcast_arrays(*(jnp.asarray(x, float) for x in (square, speed, edgewise, floor)))
     )
 
     def halved(_: int, bracket: tuple[Array, Array]) -> tuple[Array, Array]:
@@ -87,7 +87,7 @@ def _tilted_root(square: Scalar, speed: Scalar, edgewise: Scalar, floor: Scalar)
     w = jax.lax.fori_loop(0, _HALVINGS, halved, (lowest, reach))[1]
     # One Newton step, in which alone the arguments count, gives the derivatives.
     encloses = _excess(lowest, *fixed) < 0.0
-    slope = jax.grad(_excess)(w, *fixed)
+    slope = jax.jvp(lambda at: _excess(at, *fixed), (w,), (jnp.ones_like(w),))[1]
     return w - jnp.where(encloses, _excess(w, square, speed, edgewise, floor) / slope, 0.0)
 
 

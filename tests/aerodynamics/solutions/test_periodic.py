@@ -111,6 +111,8 @@ def test_points_add_up_to_the_hub_loads(rotor):
     moment = jnp.cross(on_fluid.position, on_fluid.force)[..., 2].sum(axis=1).mean()
     np.testing.assert_allclose(2 * moment, loads.torque, rtol=1e-12)
     np.testing.assert_allclose(loads.hub_force[2], loads.thrust, rtol=1e-12)
+    np.testing.assert_allclose(2 * loads.strip_thrust.sum(), loads.thrust, rtol=1e-12)
+    np.testing.assert_allclose(2 * loads.strip_torque.sum(), loads.torque, rtol=1e-12)
     np.testing.assert_allclose(2 * loads.blade_force.mean(axis=0), loads.hub_force, rtol=1e-12)
 
 
