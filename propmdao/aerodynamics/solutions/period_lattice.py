@@ -248,7 +248,8 @@ def wake_velocities(points: Array, wake: PeriodWake, circulation: Array) -> Arra
     def at_azimuth(place: tuple[Array, Array]) -> Array:
         number, drift = place
         later = circulation[(jnp.arange(n_azimuths) + number) % n_azimuths]
-        ring, change = (jnp.einsum("scn,ns->cs", of, later) for of in (of_rings, of_shed))
+        ring = jnp.einsum("scn,ns->cs", of_rings, later)
+        change = jnp.einsum("scn,ns->cs", of_shed, later)
         ring = jnp.pad(ring, ((0, 0), (1, 1)))
         nodes = wake.nodes + drift
         of_filaments = jax.lax.map(of_filament, (nodes, (ring[:, :-1] - ring[:, 1:]).T))
