@@ -185,7 +185,7 @@ def wake_normalwash(lattice: LatticeGeometry, wake: PeriodWake) -> Array:
     """
     points, normals = lattice.rings.collocation, lattice.rings.normal
     (ring, shed), (trailing_core, shed_core) = wake.weights, wake.cores
-    n_azimuths = ring.shape[-1]
+    n_azimuths = ring.shape[1]
 
     # One strip at a time: the block of segments x points stays in cache. The checkpoint keeps
     # reverse mode from storing every block.
@@ -200,7 +200,7 @@ def wake_normalwash(lattice: LatticeGeometry, wake: PeriodWake) -> Array:
         outer = by_filament(tip)
         start, end = (edge[:, :-1].reshape(-1, 3) for edge in (root, tip))
         across = segment_normalwash(points, normals, start, end, shed_core)
-        return outer, ring.T @ (outer - inner) + shed.T @ across
+        return outer, ring @ (outer - inner) + shed @ across
 
     def at_azimuth(place: tuple[Array, Array]) -> Array:
         number, drift = place
@@ -231,7 +231,7 @@ def wake_velocities(points: Array, wake: PeriodWake, circulation: Array) -> Arra
         Velocity at each azimuth [m/s].
     """
     (of_rings, of_shed), (trailing_core, shed_core) = wake.weights, wake.cores
-    n_azimuths = of_rings.shape[-1]
+    n_azimuths = of_rings.shape[1]
 
     @jax.checkpoint
     def of_filament(filament: tuple[Array, Array]) -> Array:
@@ -248,8 +248,8 @@ def wake_velocities(points: Array, wake: PeriodWake, circulation: Array) -> Arra
     def at_azimuth(place: tuple[Array, Array]) -> Array:
         number, drift = place
         later = circulation[(jnp.arange(n_azimuths) + number) % n_azimuths]
-        ring = jnp.einsum("scn,ns->cs", of_rings, later)
-        change = jnp.einsum("scn,ns->cs", of_shed, later)
+        ring = jnp.einsum("snc,ns->cs", of_rings, later)
+        change = jnp.einsum("snc,ns->cs", of_shed, later)
         ring = jnp.pad(ring, ((0, 0), (1, 1)))
         nodes = wake.nodes + drift
         of_filaments = jax.lax.map(of_filament, (nodes, (ring[:, :-1] - ring[:, 1:]).T))

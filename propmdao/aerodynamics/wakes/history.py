@@ -65,9 +65,10 @@ def history_weights(
 
     Returns
     -------
-    ring, shed : (ns, n_blades * (n_nodes - 1), n_azimuths) arrays
-        Weight, in each ring behind each blade and in the shed segment at its younger end, of the
-        circulation that blade 1 has so many azimuths later.
+    ring, shed : (ns, n_azimuths, n_blades * (n_nodes - 1)) arrays
+        Weight of the circulation that blade 1 has so many azimuths later in each ring behind each
+        blade and in the shed segment at its younger end (last axis: sums over it are the products
+        that take time).
     """
     ahead = n_azimuths // n_blades * jnp.arange(n_blades)
     behind = (middles(ages) + delay[:, None]) * n_azimuths / (2.0 * jnp.pi)
@@ -89,5 +90,8 @@ def history_weights(
         ring += weight[..., None] * at(cell + j)
     now = jnp.broadcast_to(at(ahead)[:, None], (*ring.shape[:2], 1, n_azimuths))
     before = jnp.concatenate([now, ring[:, :, :-1]], axis=2)
-    shape = delay.size, -1, n_azimuths
-    return ring.reshape(shape), (ring - before).reshape(shape)
+
+    def over_segments(weight: Array) -> Array:
+        return weight.reshape(delay.size, -1, n_azimuths).swapaxes(1, 2)
+
+    return over_segments(ring), over_segments(ring - before)
