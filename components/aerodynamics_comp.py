@@ -10,7 +10,7 @@ import openmdao.api as om
 from propmdao.aerodynamics.coefficients import coefficients
 from propmdao.aerodynamics.solutions import axial
 from propmdao.aerodynamics.solutions.known_root import steady_at
-from propmdao.aerodynamics.solutions.result import RotorLoads, failure
+from propmdao.aerodynamics.solutions.result import RotorLoads, TiltedLoads, failure
 from propmdao.components.bases.array_function import Arrays
 from propmdao.components.bases.nodes_comp import NodesComp
 from propmdao.components.bases.root_component import RootComponent
@@ -182,12 +182,12 @@ def _at_root(inputs: Arrays, constants: RotorConstants, static: int) -> Arrays:
     return {**loads_outputs(loads, case.state, inputs), "residual": residual[None]}
 
 
-def loads_outputs(loads: RotorLoads, state: RotorState, inputs: Arrays) -> Arrays:
+def loads_outputs(loads: RotorLoads | TiltedLoads, state: RotorState, inputs: Arrays) -> Arrays:
     """Outputs of the component.
 
     Parameters
     ----------
-    loads : RotorLoads
+    loads : RotorLoads or TiltedLoads
         Loads of the rotor.
     state : RotorState
         How the rotor turns and flies.

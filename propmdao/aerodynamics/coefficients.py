@@ -26,7 +26,8 @@ class Coefficients:
         T / (rho n^2 D^4), Q / (rho n^2 D^5), P / (rho n^3 D^5) = 2 pi CQ.
     eta : float
         Propulsive efficiency J CT / CP = T V / P, at most 1 and 0 in hover; below 0, down to -1,
-        for a propeller that brakes, whether it takes power or gives it.
+        for a propeller that brakes, whether it takes power or gives it. At an incidence V is the
+        part of the flight along the shaft.
     figure_of_merit : float
         Ideal power of hover, T^1.5 / sqrt(2 rho A), over shaft power, at most 1; below 0, down to
         -1, for negative thrust. It means something at speed 0.
@@ -70,7 +71,9 @@ def coefficients(
     CP = 2.0 * jnp.pi * CQ
     # T^1.5 / sqrt(2 rho A) per rho n^3 D^5, with A = pi D^2 / 4 and the sign of the thrust.
     hover = jnp.sqrt(2.0 / jnp.pi) * CT * _sqrt(jnp.abs(CT))
-    return Coefficients(J, CT, CQ, CP, _share(J * CT, CP), _share(hover, CP))
+    # The part of the flight against which the thrust works.
+    along = J * jnp.cos(state.incidence)
+    return Coefficients(J, CT, CQ, CP, _share(along * CT, CP), _share(hover, CP))
 
 
 def _share(useful: Array, shaft: Array) -> Array:

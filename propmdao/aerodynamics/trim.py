@@ -12,7 +12,7 @@ import numpy as np
 from jax import Array
 
 from propmdao.aerodynamics.solutions.case import RotorCase
-from propmdao.aerodynamics.solutions.result import RotorLoads
+from propmdao.aerodynamics.solutions.result import RotorLoads, TiltedLoads
 from propmdao.aerodynamics.solutions.roots import at_root, empty
 from propmdao.records.pytrees import Scalar, record
 from propmdao.records.units import RAD_PER_S
@@ -31,9 +31,9 @@ class TrimError(ValueError):
 
 
 class Solver(Protocol):
-    """Functions that a trim needs of a solver; `solutions.axial` is such a module."""
+    """Functions that a trim needs of a solver, a module as `solutions.axial` or `periodic`."""
 
-    def solve(self, case: RotorCase) -> RotorLoads:
+    def solve(self, case: RotorCase) -> RotorLoads | TiltedLoads:
         """Return the loads at the rotation speed of the case."""
 
     def flow_at(self, case: RotorCase) -> Any:
@@ -46,7 +46,7 @@ class Solver(Protocol):
 
     def solution(
         self, flow: Any, thrust_required: Scalar, rotation_speed: Scalar, results: Any
-    ) -> RotorLoads:
+    ) -> RotorLoads | TiltedLoads:
         """Return the loads from the second thing that `evaluate` returned."""
 
 
@@ -75,13 +75,13 @@ class Trimmed:
         unless the thrust missing is positive at the lower and negative at the upper bound.
     missing : (scalar, scalar)
         Thrust required less the thrust at the lower and at the upper bound [N].
-    loads : RotorLoads
+    loads : RotorLoads or TiltedLoads
         Loads at that rotation speed.
     """
 
     rotation_speed: Array
     missing: tuple[Array, Array]
-    loads: RotorLoads
+    loads: RotorLoads | TiltedLoads
 
 
 def rotation_bounds(radius: Scalar, speed: Scalar) -> Bounds:
@@ -132,7 +132,7 @@ def require_bounds(bounds: Bounds, speed: Scalar) -> None:
 
 def trim(
     solver: Solver, case: RotorCase, thrust_required: float, bounds: Bounds
-) -> tuple[float, RotorLoads]:
+) -> tuple[float, RotorLoads | TiltedLoads]:
     """Solve for the rotation speed that gives the required thrust, and the loads there.
 
     Parameters
@@ -148,7 +148,7 @@ def trim(
 
     Returns
     -------
-    rotation_speed, loads : float, RotorLoads
+    rotation_speed, loads : float, RotorLoads or TiltedLoads
         Rotation speed, to 1e-8 relative [rad/s], and the loads there.
 
     Raises

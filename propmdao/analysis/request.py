@@ -33,6 +33,7 @@ class Asked(TypedDict, total=False):
     rpm: float | None
     thrust: float | None
     speed: float
+    incidence_deg: float
     density: float
     sound_speed: float
     dynamic_viscosity: float

@@ -17,7 +17,7 @@ from propmdao.acoustics.levels.decibels import level_db, mean_square, oaspl_db, 
 from propmdao.acoustics.levels.weighting import level_dba, oaspl_dba
 from propmdao.acoustics.signals import Tones
 from propmdao.aerodynamics.coefficients import Coefficients
-from propmdao.aerodynamics.solutions.result import RotorLoads, failure
+from propmdao.aerodynamics.solutions.result import RotorLoads, TiltedLoads, failure
 from propmdao.analysis.elastic.deflections import Deflection
 from propmdao.analysis.request import Request
 from propmdao.analysis.self_noise import BANDS_HZ
@@ -47,8 +47,8 @@ class Analysis:
         All that was asked; `point`, `change`, `model` and `listening` are its records.
     rpm : float
         Rotation speed [rev/min], asked for or found.
-    loads : RotorLoads
-        Loads of the vortex lattice.
+    loads : RotorLoads or TiltedLoads
+        Loads of the vortex lattice; at an incidence those of a turn.
     coefficients : Coefficients
         J, CT, CQ, CP, eta, figure of merit.
     tones : Tones
@@ -64,7 +64,7 @@ class Analysis:
     propeller: Propeller
     request: Request
     rpm: float
-    loads: RotorLoads
+    loads: RotorLoads | TiltedLoads
     coefficients: Coefficients
     tones: Tones
     broadband: SelfNoise | None
@@ -117,7 +117,9 @@ class Analysis:
             speed, rho, J, thrust, torque, shaft_power, CT, CQ, CP, eta, figure_of_merit, converged,
             failure (None, or why it did not converge), deflection (None, or r_over_R, twist_deg,
             sweep_over_R and rake_over_R of an elastic blade) and a list of observers with their
-            levels.
+            levels. At an incidence also hub_force [N] and hub_moment [N m], means over a turn in
+            the axes of the rotor that do not turn, and azimuths, with force and moment of blade 1
+            at each.
         """
         levels = jax.tree.map(np.asarray, _levels(self.tones))
         places = directions(self.listening.observers).rounded()
@@ -142,6 +144,7 @@ class Analysis:
             "converged": bool(self.loads.converged),
             "failure": failure(self.loads),
             "deflection": to_plain(self.deflection),
+            **self._around_the_turn(),
             "observers": [
                 {
                     "elevation_deg": float(places.elevation_deg[i]),
@@ -150,6 +153,25 @@ class Analysis:
                     **self._heard(i, levels),
                 }
                 for i in range(len(self.listening.observers))
+            ],
+        }
+
+    def _around_the_turn(self) -> dict[str, Any]:
+        """Loads of the hub, and those of blade 1 at its azimuths, at an incidence."""
+        loads = self.loads
+        if not isinstance(loads, TiltedLoads):
+            return {}
+        vectors = np.asarray(loads.blade_force), np.asarray(loads.blade_moment)
+        return {
+            "hub_force": np.asarray(loads.hub_force).tolist(),
+            "hub_moment": np.asarray(loads.hub_moment).tolist(),
+            "azimuths": [
+                {
+                    "azimuth_deg": 360.0 * number / len(vectors[0]),
+                    "blade_force": force.tolist(),
+                    "blade_moment": moment.tolist(),
+                }
+                for number, (force, moment) in enumerate(zip(*vectors, strict=True))
             ],
         }
 

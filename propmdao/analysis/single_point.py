@@ -3,17 +3,22 @@
 from __future__ import annotations
 
 import dataclasses
+import warnings
 from functools import partial
-from typing import Unpack
+from typing import Any, Unpack
 
 import jax
+import jax.numpy as jnp
 import numpy as np
 from jax import Array
 
 from propmdao.acoustics.broadband.self_noise import SelfNoise
 from propmdao.acoustics.kinematics.limits import require_outside_rotor, require_subsonic_tip
 from propmdao.acoustics.propagation.paths import bands_by_paths, sound_paths, tones_by_paths
+from propmdao.acoustics.signals import Tones
 from propmdao.acoustics.sources.formulation1a import tones
+from propmdao.acoustics.sources.periodic import rotor_tones
+from propmdao.acoustics.sources.rotors import Rotor, equally_spaced
 from propmdao.aerodynamics.coefficients import coefficients
 from propmdao.aerodynamics.rotor_geometry import RotorGeometry
 from propmdao.aerodynamics.sections.laws import viscous_sections
@@ -21,10 +26,10 @@ from propmdao.aerodynamics.sections.polars.family import SectionPolars, warn_out
 from propmdao.aerodynamics.sections.polars.propeller_polars import polars_for
 from propmdao.aerodynamics.sections.polars.sources import polar_sources
 from propmdao.aerodynamics.sections.polars.table import warn_outside
-from propmdao.aerodynamics.solutions import axial
+from propmdao.aerodynamics.solutions import axial, periodic
 from propmdao.aerodynamics.solutions.case import RotorCase
-from propmdao.aerodynamics.solutions.result import RotorLoads
-from propmdao.aerodynamics.trim import rotation_bounds, trim
+from propmdao.aerodynamics.solutions.result import RotorLoads, TiltedLoads
+from propmdao.aerodynamics.trim import Solver, rotation_bounds, trim
 from propmdao.aerodynamics.wakes.helical import wake_transport
 from propmdao.analysis.elastic.deflections import Solved, deflected
 from propmdao.analysis.elastic.materials import material_of
@@ -41,8 +46,16 @@ from propmdao.records.models import Model
 from propmdao.records.panels import Panels
 from propmdao.records.states import OperatingPoint, RotorState
 from propmdao.records.units import RAD_PER_S
+from propmdao.records.wake_law import WakeGrid
 from propmdao.runtime.compilation import compiled
 from propmdao.runtime.finite import require_finite
+
+_SLOW, _LONGER = 0.05, 1.5  # advance ratio below which the wake has so many times the turns
+_FAST = 0.3  # advance ratio beyond which results are doubtful
+
+
+class FastEdgewiseWarning(UserWarning):
+    """A rotor flies edgewise so fast that its retreating side stalls."""
 
 
 def analyze(
@@ -76,8 +89,8 @@ def analyze(
     polars : SectionPolars, optional
         Polars by `polars_for`, for tables of one's own; by default the catalogue's.
     **asked
-        Single values: rpm, thrust [N], speed [m/s], density [kg/m^3] and the rest of the air;
-        twist_offset_deg, chord_factor, diameter, n_blades; viscous, stall_delay, n_crit,
+        Single values: rpm, thrust [N], speed [m/s], incidence_deg, density [kg/m^3] and the rest of
+        the air; twist_offset_deg, chord_factor, diameter, n_blades; viscous, stall_delay, n_crit,
         trip_upper, trip_lower, measured_drag, elastic, youngs_modulus, shear_modulus [Pa],
         material_density [kg/m^3], broadband, trip, fidelity; observers, (n, 3) positions [m] as
         `propmdao.arc` makes them, surroundings.
@@ -105,6 +118,7 @@ def analyze(
     require_outside_rotor(listening.observers, radius)
     if listening.surroundings.absorption:
         require_known_air(point.air)
+    _require_modelled(request)
     paths = sound_paths(listening.observers, listening.surroundings)
 
     elastic = model.loads.elastic
@@ -135,8 +149,11 @@ def analyze(
             point.at(0.0),
             sections,
             wake_transport(model.loads.wake, fidelity.wake),
+            fidelity.n_azimuths,
         )
-        return Solved(blade, panels, case, *_solve(case, point))
+        if point.incidence_deg == 0.0:
+            return Solved(blade, panels, case, *_solve(axial, case, point))
+        return Solved(blade, panels, case, *_tilted(case, point, model))
 
     if material is None:
         deflection, solved = None, held(changed)
@@ -148,11 +165,10 @@ def analyze(
         _warn_outside_polars(case, loads)
 
     points = paths.reshape(-1, 3)
-    sound = tones(
-        panels, loads.point_loads, case.rotor.n_blades, state, points, fidelity.n_harmonics
-    )
+    sound = _tones(panels, loads, case.rotor.n_blades, state, points, fidelity.n_harmonics)
     noise = None
     if model.noise.broadband is not None:
+        assert isinstance(loads, RotorLoads)  # refused before
         states = loads.sections
         flow = strip_flow(
             loads.strips, states.relative_speed, states.lift_coefficient, blade, radii.strips
@@ -174,16 +190,80 @@ def analyze(
     return analysis
 
 
-def _solve(case: RotorCase, point: OperatingPoint) -> tuple[RotorLoads, RotorState]:
+def _require_modelled(request: Request) -> None:
+    """Refuse what is not modelled at an incidence, before the work."""
+    point, around = request.point, request.listening.surroundings
+    if request.model.noise.broadband is not None:
+        point.require_axial("broadband noise")
+    if request.model.loads.elastic is not None:
+        point.require_axial("an elastic blade")
+    if around != Surroundings():
+        point.require_axial("sound over the ground or through air that absorbs it")
+
+
+def _solve(solver: Solver, case: RotorCase, point: OperatingPoint) -> tuple[Any, RotorState]:
     """Loads at the operating point, and the state of the rotor there."""
     radius, speed = float(case.rotor.radius), float(point.speed)
     if point.thrust is not None:
-        rotation_speed, loads = trim(axial, case, point.thrust, rotation_bounds(radius, speed))
+        rotation_speed, loads = trim(solver, case, point.thrust, rotation_bounds(radius, speed))
         return loads, point.at(rotation_speed)
     assert point.rotation_speed is not None
     state = point.at(point.rotation_speed)
-    require_subsonic_tip(radius, state)
-    return axial.solve(case.turning(point.rotation_speed)), state
+    # The fastest a blade gets: at an incidence, on the advancing side.
+    edgewise, axial_speed = float(state.edgewise_speed), float(state.axial_speed)
+    advancing = point.rotation_speed + edgewise / radius
+    require_subsonic_tip(radius, RotorState(advancing, abs(axial_speed), state.air))
+    return solver.solve(case.turning(point.rotation_speed)), state
+
+
+def _tilted(case: RotorCase, point: OperatingPoint, model: Model) -> tuple[TiltedLoads, RotorState]:
+    """Loads at an incidence; in slow flight, where the wake stays near, with a longer one."""
+    grid = model.fidelity.period_wake
+    longer = dataclasses.replace(grid, turns=_LONGER * grid.turns)
+
+    def solved(grid: WakeGrid) -> tuple[TiltedLoads, RotorState, float]:
+        wake = wake_transport(model.loads.wake, grid)
+        loads, state = _solve(periodic, dataclasses.replace(case, wake=wake), point)
+        return loads, state, _edgewise_advance_ratio(state, float(case.rotor.radius))
+
+    known = point.rotation_speed
+    slow = known is not None and (
+        _edgewise_advance_ratio(point.at(known), float(case.rotor.radius)) < _SLOW
+    )
+    loads, state, ratio = solved(longer if slow else grid)
+    if ratio < _SLOW and not slow:
+        loads, state, ratio = solved(longer)
+    if ratio > _FAST:
+        warnings.warn(
+            f"advance ratio V sin(incidence) / (Omega R) {ratio:.3g} is above {_FAST:g}: the"
+            " retreating side stalls and meets the air from behind, and dynamic stall is not"
+            " modelled",
+            FastEdgewiseWarning,
+            stacklevel=3,
+        )
+    return loads, state
+
+
+def _edgewise_advance_ratio(state: RotorState, radius: float) -> float:
+    """V sin(incidence) / (Omega R), 0 for a rotor that does not turn."""
+    tip_speed = float(state.rotation_speed) * radius
+    return float(state.edgewise_speed) / tip_speed if tip_speed else 0.0
+
+
+def _tones(
+    panels: Panels,
+    loads: RotorLoads | TiltedLoads,
+    n_blades: int,
+    state: RotorState,
+    points: np.ndarray,
+    n_harmonics: int,
+) -> Tones:
+    """Tones at the ends of all ways to the observers."""
+    if isinstance(loads, RotorLoads):
+        return tones(panels, loads.point_loads, n_blades, state, points, n_harmonics)
+    rotor = Rotor(equally_spaced(n_blades), float(state.rotation_speed), panels, loads.point_loads)
+    velocity = float(state.edgewise_speed), 0.0, float(state.axial_speed)
+    return rotor_tones(rotor, velocity, state.air, points, n_harmonics)
 
 
 @partial(compiled, static_argnames=("n_chordwise", "n_contour"))
@@ -211,12 +291,14 @@ def _require_numbers(analysis: Analysis) -> None:
     where = f", at {analysis.rpm:g} rpm and {analysis.point.speed:g} m/s"
     loads, noise = analysis.loads, analysis.broadband
     strips = [f"r/R {r:.2f}" for r in np.asarray(loads.strips.r_over_R)]
-    by_strip = {
+    azimuths: tuple[str, ...] = ("azimuth",) if isinstance(loads, TiltedLoads) else ()
+    of_sections = {
         "section_speed": loads.sections.relative_speed,
         "section_lift_coefficient": loads.sections.lift_coefficient,
-        "strip_thrust": loads.strip_thrust,
-        "strip_torque": loads.strip_torque,
     }
+    by_strip = {"strip_thrust": loads.strip_thrust, "strip_torque": loads.strip_torque}
+    for name, values in of_sections.items():
+        require_finite(name, values, *azimuths, strips, where=where)
     for name, values in by_strip.items():
         require_finite(name, values, strips, where=where)
     for record in (loads, analysis.coefficients):
@@ -227,7 +309,7 @@ def _require_numbers(analysis: Analysis) -> None:
         "load_position": loads.point_loads.position,
         "load_force": loads.point_loads.force,
     }.items():
-        require_finite(name, values, "load", where=where)
+        require_finite(name, values, *azimuths[: values.ndim - 2], "load", where=where)
     for name, pressure in analysis.tones.parts.items():
         require_finite(f"{name} noise", pressure, "observer", "harmonic", where=where)
     bands = [f"{frequency:g} Hz" for frequency in BANDS_HZ]
@@ -235,10 +317,12 @@ def _require_numbers(analysis: Analysis) -> None:
         require_finite(f"broadband {name}", getattr(noise, name), "observer", bands, where=where)
 
 
-def _warn_outside_polars(case: RotorCase, loads: RotorLoads) -> None:
+def _warn_outside_polars(case: RotorCase, loads: RotorLoads | TiltedLoads) -> None:
     """Tell of strips whose Reynolds or Mach number the polars do not reach."""
     assert case.sections is not None
-    speed, strips, air = loads.sections.relative_speed, loads.strips, case.state.air
+    strips, air = loads.strips, case.state.air
+    # At an incidence the mean over the turn: on the retreating side the air may stand still.
+    speed = jnp.atleast_2d(loads.sections.relative_speed).mean(axis=0)
     if np.all(np.asarray(speed) > 0.0):
         reynolds = air.density * speed * strips.chord / air.dynamic_viscosity
         warn_outside(case.sections.polars, reynolds, strips.r_over_R, speed / air.sound_speed)

@@ -37,12 +37,14 @@ if TYPE_CHECKING:
     from propmdao.analysis.results import Analysis
 
 DESCRIPTION = """\
-Thrust, torque and noise of a propeller in hover (speed 0) or axial flight.
+Thrust, torque and noise of a propeller in hover (speed 0), axial flight or at an incidence.
 
 Steady vortex lattice held to the polars of the blade's sections, with a wake carried by the flow it
 induces, then tones by Farassat's Formulation 1A: thickness and loading noise of the full blade
-surface, heard by observers that fly along. With --broadband also the self-noise of the blades
-(Brooks, Pope and Marcolini). Ground may reflect the sound, and air absorb it.
+surface, heard by observers that fly along. At an --incidence the loads change around the turn: the
+lattice is solved for all azimuths together, in a wake that is carried off sideways.
+With --broadband also the self-noise of the blades (Brooks, Pope and Marcolini). Ground may reflect
+the sound, and air absorb it.
 
 The polars that ship are of E63, Clark-Y, their blends and NACA 4-digit sections at n_crit 3 to 9,
 and tripped at 0.05 c on both sides at n_crit 5; others are given with --polar, or made where
@@ -52,6 +54,7 @@ NeuralFoil is installed, once on a machine.
 EXAMPLES = """\
 examples:
   propmdao analyze apcsf_11x4.7 --rpm 4200 --speed 8
+  propmdao analyze apcsf_11x4.7 --rpm 6000 --speed 10 --incidence 70 --arc 1.905 -60 --json
   propmdao analyze apcsf_11x4.7 --thrust 1.5 --speed 8 --arc 1.905 -45 --broadband
   propmdao analyze my_blade.toml --rpm 3000:5000:500 --arc 1.905 -45 0 45 --json
   propmdao analyze apcsf_11x4.7 --rpm 4200 --arc 1.905 -45 --band
@@ -73,6 +76,7 @@ ASKED_OPTIONS = (
     "rpm",
     "thrust",
     "speed",
+    "incidence_deg",
     "density",
     "twist_offset_deg",
     "viscous",

@@ -68,8 +68,10 @@ def print_analyses(analyses: Sequence[dict[str, Any]]) -> None:
     """
     console = plain_console()
     first = analyses[0]
+    incidence = first["point"]["incidence_deg"]
+    tilted = f" at an incidence of {incidence:g} deg" if incidence else ""
     _print_propeller(
-        console, first, f"speed {first['speed']:.4g} m/s, air {first['rho']:.4g} kg/m3"
+        console, first, f"speed {first['speed']:.4g} m/s{tilted}, air {first['rho']:.4g} kg/m3"
     )
     console.print(_operating_points(analyses))
     if any(analysis["observers"] for analysis in analyses):

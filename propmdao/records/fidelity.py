@@ -27,7 +27,12 @@ class Fidelity:
     n_harmonics : int
         Harmonics of the blade passage frequency.
     wake : WakeGrid
-        Nodes of the wake's filaments.
+        Nodes of the wake's filaments in axial flight.
+    n_azimuths : int
+        Azimuths of the period in flight at an incidence, rounded up to a multiple of the blades.
+    period_wake : WakeGrid
+        Nodes of the wake there: what the blade has just shed decides how its loads change, so the
+        steps begin small.
 
     Raises
     ------
@@ -41,6 +46,8 @@ class Fidelity:
     n_surface_span: int = 80
     n_harmonics: int = 10
     wake: WakeGrid = WakeGrid()
+    n_azimuths: int = 36
+    period_wake: WakeGrid = WakeGrid(4.0, 0.25, 1.25, 10.0)
 
     def __post_init__(self) -> None:
         """Refuse resolutions that no mesh can have, or no memory hold."""
@@ -50,6 +57,7 @@ class Fidelity:
             ("n_contour", Range(5, 1001)),
             ("n_surface_span", Range(2, 1001)),
             ("n_harmonics", Range(1, 1000)),
+            ("n_azimuths", Range(8, 1440)),
         ):
             allowed.require(field, getattr(self, field))
         n_panels = self.n_chordwise * self.n_spanwise

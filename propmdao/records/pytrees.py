@@ -35,12 +35,17 @@ def record(cls: type[T]) -> type[T]:
     return jax.tree_util.register_dataclass(frozen)
 
 
-def static() -> Any:
+def static(default: Any = dataclasses.MISSING) -> Any:
     """Field of a record that is fixed at compile time.
+
+    Parameters
+    ----------
+    default : object
+        Value where none is given; without it one has to be.
 
     Returns
     -------
     dataclasses.Field
         Field to be written on the right side of an annotated name.
     """
-    return dataclasses.field(metadata={"static": True})
+    return dataclasses.field(default=default, metadata={"static": True})

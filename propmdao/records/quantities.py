@@ -147,9 +147,18 @@ _ASKED = (
         allowed=Range(1e-9, 1e9, "N"),
     ),
     Quantity(
-        "speed", "m/s", "axial flight speed, 0 is hover", POINT, 0.0, option="--speed",
-        placeholder="M_S", help="flight speed along the axis [m/s], default 0: hover",
+        "speed", "m/s", "flight speed, 0 is hover", POINT, 0.0, option="--speed",
+        placeholder="M_S", help="flight speed, along the axis unless there is an incidence [m/s],"
+        " default 0: hover",
         allowed=Range(0.0, 1000.0, "m/s"),
+    ),
+    Quantity(
+        "incidence_deg", "deg", "angle between shaft and direction of flight, 0 is axial flight",
+        POINT, 0.0, variable="incidence", option="--incidence", placeholder="DEG",
+        help="angle between the shaft and the direction of flight [deg], default 0: axial, 90"
+        " edgewise, above 90 with a descending part. A drone that leans forward by 20 deg in level"
+        " flight flies at 70",
+        allowed=Range(0.0, 150.0, "deg"),
     ),
     Quantity(
         "density", "kg/m**3", "density of the air", AIR, 1.225, json="rho", option="--rho",

@@ -3,6 +3,9 @@
 from __future__ import annotations
 
 import dataclasses
+import math
+
+import jax.numpy as jnp
 
 from propmdao.records.air import Air
 from propmdao.records.pytrees import Scalar, record
@@ -19,19 +22,33 @@ class RotorState:
     rotation_speed : scalar
         Rotation speed about +z [rad/s].
     speed : scalar
-        Axial flight speed, 0 is hover [m/s].
+        Flight speed, 0 is hover [m/s].
     air : Air
         The undisturbed air.
+    incidence : scalar
+        Angle between the shaft (+z) and the direction of flight, which lies in the plane of +z and
+        +x: 0 is axial flight, pi/2 edgewise [rad].
     """
 
     rotation_speed: Scalar
     speed: Scalar
     air: Air
+    incidence: Scalar = 0.0
 
     @property
     def mach(self) -> Scalar:
         """Mach number of the flight."""
         return self.speed / self.air.sound_speed
+
+    @property
+    def axial_speed(self) -> Scalar:
+        """Part of the flight speed along the shaft [m/s]."""
+        return self.speed * jnp.cos(self.incidence)
+
+    @property
+    def edgewise_speed(self) -> Scalar:
+        """Part of the flight speed in the plane of the rotor, along +x [m/s]."""
+        return self.speed * jnp.sin(self.incidence)
 
     def turning(self, rotation_speed: Scalar) -> RotorState:
         """The same flight at another rotation speed [rad/s]."""
@@ -49,7 +66,9 @@ class OperatingPoint:
     thrust : float or None
         Thrust required of all blades [N]; None where the rotation speed is given.
     speed : float
-        Axial flight speed, 0 is hover [m/s].
+        Flight speed, 0 is hover [m/s].
+    incidence_deg : float
+        Angle between the shaft and the direction of flight, 0 is axial flight [deg].
     air : Air
         The undisturbed air.
 
@@ -62,6 +81,7 @@ class OperatingPoint:
     rpm: float | None = None
     thrust: float | None = None
     speed: float = 0.0
+    incidence_deg: float = 0.0
     air: Air = dataclasses.field(default_factory=Air)
 
     def __post_init__(self) -> None:
@@ -73,6 +93,7 @@ class OperatingPoint:
         if self.thrust is not None:
             require_asked("thrust", self.thrust)
         require_asked("speed", self.speed)
+        require_asked("incidence_deg", self.incidence_deg)
         # Not by Air itself, which JAX makes of what it traces.
         for field in dataclasses.fields(self.air):
             require_asked(field.name, getattr(self.air, field.name))
@@ -90,7 +111,27 @@ class OperatingPoint:
         RotorState
             Rotation speed, flight speed and air, as the solvers take them.
         """
-        return RotorState(rotation_speed, float(self.speed), self.air)
+        incidence = math.radians(self.incidence_deg)
+        return RotorState(rotation_speed, float(self.speed), self.air, incidence)
+
+    def require_axial(self, what: str) -> None:
+        """Refuse an incidence where only axial flight is modelled.
+
+        Parameters
+        ----------
+        what : str
+            What is asked for, in words.
+
+        Raises
+        ------
+        ValueError
+            If there is an incidence.
+        """
+        if self.incidence_deg != 0.0:
+            raise ValueError(
+                f"incidence_deg must be 0 for {what}, known in axial flight alone; it is"
+                f" {self.incidence_deg:g}"
+            )
 
     @property
     def rotation_speed(self) -> float | None:

@@ -7,9 +7,9 @@ import dataclasses
 from propmdao.records.pytrees import Scalar, record
 from propmdao.records.quantities import Range
 
-# The longest and finest wake has 36,000 nodes on a filament.
+# The longest and finest wake has 360,000 nodes on a filament.
 _TURNS = Range(0.01, 100.0)
-_STEP_DEG = Range(1.0, 360.0, "deg")
+_STEP_DEG = Range(0.1, 360.0, "deg")
 _GROWTH = Range(1.0, 100.0)
 
 

@@ -5,7 +5,7 @@ import numpy as np
 
 from propmdao.aerodynamics.lattice.rings import Rings, blade_influence, wake_influence
 from propmdao.aerodynamics.solutions.axial import flow_at, loads_at
-from propmdao.aerodynamics.vortices.cores import core_radius
+from propmdao.aerodynamics.vortices.cores import core_radius, middles
 from propmdao.aerodynamics.wakes.helical import helical_wake
 
 B = 3
@@ -32,9 +32,8 @@ def test_one_blade_for_all_is_all_blades_solved(slow_flyer):
         Rings(*(turned(a, b) for a in (lattice.rings.corner, *_points_and_normals(lattice.rings))))
         for b in range(B)
     ]
-    core = core_radius(
-        jnp.asarray(case.wake.ages), OMEGA, case.state.air.kinematic_viscosity, 1e-4 * radius
-    )
+    ages, viscosity = jnp.asarray(case.wake.ages), case.state.air.kinematic_viscosity
+    core = core_radius(middles(ages), OMEGA, viscosity, 1e-4 * radius)
     rows = []
     for felt in rings:
         row = []

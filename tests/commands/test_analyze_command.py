@@ -274,7 +274,7 @@ def test_keys_are_those_promised() -> None:
         " CT CQ CP eta figure_of_merit converged failure deflection observers".split()
     )
     assert set(point["propeller"]) == {"name", "diameter", "n_blades", "checksum", "source"}
-    assert set(point["point"]) == {"rpm", "thrust", "speed", "air"}
+    assert set(point["point"]) == {"rpm", "thrust", "speed", "incidence_deg", "air"}
     assert set(point["point"]["air"]) == set(
         "rho sound_speed dynamic_viscosity temperature pressure relative_humidity".split()
     )

@@ -106,5 +106,5 @@ def test_a_range_holds_its_ends_and_says_zero_where_that_is_allowed():
 
 
 def test_a_sweep_varies_operation_and_blade():
-    columns = "rpm thrust_required speed rho twist_offset_deg chord_factor diameter n_blades"
-    assert list(VARIABLES) == columns.split()
+    operation, blade = "speed incidence_deg rho", "twist_offset_deg chord_factor diameter n_blades"
+    assert list(VARIABLES) == f"rpm thrust_required {operation} {blade}".split()

@@ -10,7 +10,7 @@ from jax import Array
 from numpy.typing import ArrayLike, NDArray
 from scipy.interpolate import CubicSpline
 
-from propmdao.records.loads import PointLoads
+from propmdao.records.loads import PeriodicLoads, PointLoads
 from propmdao.records.panels import Panels
 from propmdao.records.pytrees import record
 
@@ -76,23 +76,6 @@ def compact_sections(position: ArrayLike, volume: ArrayLike) -> Panels:
     center = x[:, None] + 0.5 * size * sides
     area = np.asarray(volume, float).reshape(-1, 1, 1) / size * sides
     return Panels(jnp.asarray(center.reshape(-1, 3)), jnp.asarray(area.reshape(-1, 3)))
-
-
-@record
-class PeriodicLoads:
-    """Forces of a blade that repeat every turn.
-
-    Attributes
-    ----------
-    position : (n, 3) array
-        Points at which the forces act, in the blade's frame [m].
-    force : (n_azimuths, n, 3) array
-        Force ON THE FLUID, components in the blade's frame [N], at equally spaced azimuths of the
-        blade from 0; the last row is not the first again.
-    """
-
-    position: Array
-    force: Array
 
 
 @record

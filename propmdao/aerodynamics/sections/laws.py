@@ -107,7 +107,11 @@ class SectionLaws:
 
 
 def section_laws(
-    strips: Strips, turning: Array, axial_speed: Scalar, air: Air, sections: ViscousSections
+    strips: Strips,
+    relative_speed: Array,
+    turning_share: Scalar,
+    air: Air,
+    sections: ViscousSections,
 ) -> SectionLaws:
     """Polars of the strips at an operating point.
 
@@ -115,10 +119,10 @@ def section_laws(
     ----------
     strips : Strips
         Sections of blade 1.
-    turning : (ns,) array
-        Speed at which rotation moves the sections [m/s].
-    axial_speed : float
-        Sum of flight speed and induced velocity at the disk [m/s].
+    relative_speed : (ns,) array
+        Speed of the air relative to the sections [m/s].
+    turning_share : float
+        Rotational speed of the tip over its resultant with the axial speed, for the stall delay.
     air : Air
         The undisturbed air.
     sections : ViscousSections
@@ -129,11 +133,9 @@ def section_laws(
     SectionLaws
         Lift and drag of the strips as functions of the angle of attack alone.
     """
-    w = jnp.hypot(turning, axial_speed)
+    w = relative_speed
     reynolds = air.density * w * strips.chord / air.dynamic_viscosity
     curves = section_curves(sections.polars, reynolds, w / air.sound_speed)
-    tip_speed = turning / strips.r_over_R
-    turning_share = tip_speed / jnp.hypot(tip_speed, axial_speed)
     factor = delay_factor(strips.chord / strips.radius, strips.r_over_R, turning_share)
     delay = sections.stall_delay * factor
     thin, mean = strips.zero_lift_angle, _spanwise_mean(strips)

@@ -25,14 +25,9 @@ from propmdao.aerodynamics.solutions.lattice_loads import (
     lattice_geometry,
     loads_with_wake,
 )
-from propmdao.aerodynamics.solutions.result import (
-    MOST_BORROWED_LIFT,
-    SETTLED,
-    RotorLoads,
-    strip_loads,
-)
+from propmdao.aerodynamics.solutions.result import RotorLoads, sections_agree, strip_loads
 from propmdao.aerodynamics.solutions.roots import at_root, decreasing_root
-from propmdao.aerodynamics.vortices.cores import core_radius
+from propmdao.aerodynamics.vortices.cores import core_radius, middles
 from propmdao.aerodynamics.wakes.helical import helical_wake
 from propmdao.aerodynamics.wakes.momentum import momentum_induced_velocity
 from propmdao.records.loads import PointLoads
@@ -124,7 +119,7 @@ def loads_at(flow: AxialFlow, induced_velocity: Scalar) -> LatticeLoads:
     rotor, state = case.rotor, case.state
     wake = helical_wake(lattice.rings.corner[-1], case.wake, rotor, state, induced_velocity)
     core = core_radius(
-        jnp.asarray(case.wake.ages),
+        middles(jnp.asarray(case.wake.ages)),
         state.rotation_speed,
         state.air.kinematic_viscosity,
         BOUND_CORE * rotor.radius,
@@ -267,8 +262,6 @@ def rotor_loads(
     agrees = jnp.abs(induced_velocity(flow, thrust) - w) < 1.0e-6 * tip_speed
     windmilling_limit = -0.5 * area * state.air.density * state.speed**2
     within_momentum_theory = (state.speed == 0.0) | (thrust > windmilling_limit)
-    settled = jnp.abs(loads.sections.residual).max() < SETTLED
-    plausible = jnp.abs(loads.sections.borrowed_lift).max() < MOST_BORROWED_LIFT
     strip_thrust, strip_torque = strip_loads(loads)
     return RotorLoads(
         thrust=thrust,
@@ -280,7 +273,7 @@ def rotor_loads(
         point_loads=PointLoads(loads.position, -loads.force),
         strips=flow.lattice.strips,
         sections=loads.sections,
-        converged=agrees & within_momentum_theory & settled & plausible,
+        converged=agrees & within_momentum_theory & sections_agree(loads.sections),
     )
 
 

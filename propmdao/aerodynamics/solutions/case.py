@@ -7,7 +7,7 @@ import dataclasses
 from propmdao.aerodynamics.rotor_geometry import RotorGeometry
 from propmdao.aerodynamics.sections.laws import ViscousSections
 from propmdao.aerodynamics.wakes.helical import WakeTransport, wake_transport
-from propmdao.records.pytrees import Scalar, record
+from propmdao.records.pytrees import Scalar, record, static
 from propmdao.records.states import RotorState
 
 
@@ -25,12 +25,16 @@ class RotorCase:
         Polars that the lattice is held to; None for inviscid flow.
     wake : WakeTransport
         Law by which the wake moves, and the ages of its nodes.
+    n_azimuths : int
+        Azimuths of a period at least, where the flow changes around the turn; fixed at compile
+        time.
     """
 
     rotor: RotorGeometry
     state: RotorState
     sections: ViscousSections | None = None
     wake: WakeTransport = dataclasses.field(default_factory=wake_transport)
+    n_azimuths: int = static(default=36)
 
     def turning(self, rotation_speed: Scalar) -> RotorCase:
         """The same case at another rotation speed [rad/s]."""

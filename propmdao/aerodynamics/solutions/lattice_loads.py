@@ -103,20 +103,15 @@ class Onset:
     ----------
     velocity : (3, n_points) array
         Velocity of the undisturbed air relative to the lattice's points [m/s].
-    turning : (ns,) array
-        Speed at which the air meets the sections by rotation [m/s].
-    axial_speed : scalar
-        Speed at which the air meets the disk along the axis, induced velocity included [m/s].
+    relative_speed : (ns,) array
+        Resultant speed of the air at the sections, induced velocity of the disk included [m/s].
+    turning_share : scalar
+        Rotational speed of the tip over its resultant with the axial speed.
     """
 
     velocity: Array
-    turning: Array
-    axial_speed: Scalar
-
-    @property
-    def relative_speed(self) -> Array:
-        """Resultant speed of the air at the sections, (ns,) [m/s]."""
-        return jnp.hypot(self.turning, self.axial_speed)
+    relative_speed: Array
+    turning_share: Scalar
 
 
 def axial_onset(lattice: LatticeGeometry, state: RotorState, induced_velocity: Scalar) -> Onset:
@@ -139,7 +134,13 @@ def axial_onset(lattice: LatticeGeometry, state: RotorState, induced_velocity: S
     omega, speed = state.rotation_speed, state.speed
     x, y = lattice.points[:, 0], lattice.points[:, 1]
     velocity = jnp.stack([omega * y, -omega * x, jnp.full_like(x, -speed)])
-    return Onset(velocity, omega * lattice.strips.radius, speed + induced_velocity)
+    axial_speed, radius = speed + induced_velocity, lattice.strips.radius
+    tip_speed = omega * radius / lattice.strips.r_over_R
+    return Onset(
+        velocity,
+        jnp.hypot(omega * radius, axial_speed),
+        tip_speed / jnp.hypot(tip_speed, axial_speed),
+    )
 
 
 def lattice_geometry(rotor: RotorGeometry) -> LatticeGeometry:
@@ -216,7 +217,7 @@ def loads_with_wake(
     strip_flow = StripFlow(strips, relative_speed, circulation[-ns:], response[-ns:])
     recambering, laws = jnp.zeros(ns), None
     if sections is not None:
-        laws = section_laws(strips, onset.turning, onset.axial_speed, air, sections)
+        laws = section_laws(strips, relative_speed, onset.turning_share, air, sections)
         recambering = solve_recambering(strip_flow, laws)
         circulation = circulation + response @ recambering
     states = section_states(strip_flow, recambering, laws)
@@ -229,13 +230,28 @@ def loads_with_wake(
     return LatticeLoads(
         circulation,
         jnp.concatenate([points[n_panels:], strips.quarter_chord]),
-        jnp.concatenate([lift, _profile_drag(strips, states, air.density)]),
+        jnp.concatenate([lift, profile_drag(strips, states, air.density)]),
         states,
     )
 
 
-def _profile_drag(strips: Strips, states: SectionStates, density: Scalar) -> Array:
-    """Drag of the sections, along the air that meets them: (ns, 3) [N]."""
+def profile_drag(strips: Strips, states: SectionStates, density: Scalar) -> Array:
+    """Drag of the sections, along the air that meets them.
+
+    Parameters
+    ----------
+    strips : Strips
+        Sections of blade 1.
+    states : SectionStates
+        Flow and drag coefficients of the sections.
+    density : float
+        Density of the air [kg/m^3].
+
+    Returns
+    -------
+    (ns, 3) array
+        Forces on the blade [N].
+    """
     alpha = states.angle_of_attack[:, None]
     wind = jnp.cos(alpha) * strips.backward + jnp.sin(alpha) * strips.upward
     area = strips.chord * strips.width

@@ -172,3 +172,74 @@ def filament_velocities(points: Array, nodes: Array, core_radius: Array) -> Arra
         return _moments(a, b) @ _kernel(p, a, b, _core4(a, b, core))
 
     return _velocity(p, jnp.moveaxis(jax.lax.map(filament, nodes), 1, 0))
+
+
+def segment_normalwash(
+    points: Array, normals: Array, start: Array, end: Array, core_radius: Array
+) -> Array:
+    """Compute the velocity of each segment of unit circulation along the normal at each point.
+
+    Parameters
+    ----------
+    points, normals : (n_points, 3) arrays
+        Points [m], and unit vectors along which the velocity is wanted.
+    start, end : (n_segments, 3) arrays
+        Ends of the segments [m]; circulation is positive from start to end.
+    core_radius : (n_segments,) array
+        Vortex core radius, positive [m].
+
+    Returns
+    -------
+    (n_segments, n_points) array
+        Normal velocity per unit circulation [1/m].
+    """
+    p, a, b = points.T, start.T, end.T
+    # (P x M + C).n = M.(n x P) + C.n
+    arms = jnp.concatenate([jnp.cross(normals, points).T, normals.T])
+    return _products_of_six(_moments(a, b), arms) * _kernel(p, a, b, _core4(a, b, core_radius))
+
+
+@jax.custom_jvp
+def _products_of_six(m: Array, arms: Array) -> Array:
+    """m.T @ arms, of (6, n_segments) and (6, n_points).
+
+    A matrix product of so few terms takes longer than the kernel; written out, it is a part of it.
+    """
+    total = m[0][:, None] * arms[0]
+    for k in range(1, 6):
+        total += m[k][:, None] * arms[k]
+    return total
+
+
+@_products_of_six.defjvp
+def _change_of_products(
+    primals: tuple[Array, Array], tangents: tuple[Array, Array]
+) -> tuple[Array, Array]:
+    (m, arms), (dm, darms) = primals, tangents
+    return _products_of_six(m, arms), dm.T @ arms + m.T @ darms
+
+
+def summed_velocities(
+    points: Array, start: Array, end: Array, core_radius: Array, circulation: Array
+) -> Array:
+    """Compute the velocity of segments of known circulation at each point.
+
+    Parameters
+    ----------
+    points : (n_points, 3) array
+        Points at which the velocity is wanted [m].
+    start, end : (n_segments, 3) arrays
+        Ends of the segments [m].
+    core_radius : (n_segments,) array
+        Vortex core radius, positive [m].
+    circulation : (n_segments,) array
+        Circulation, positive from start to end [m^2/s].
+
+    Returns
+    -------
+    (3, n_points) array
+        Velocity [m/s].
+    """
+    p, a, b = points.T, start.T, end.T
+    moments = circulation * _moments(a, b)
+    return _velocity(p, moments @ _kernel(p, a, b, _core4(a, b, core_radius)))

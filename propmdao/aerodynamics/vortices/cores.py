@@ -11,7 +11,7 @@ from propmdao.records.pytrees import Scalar
 def core_radius(
     ages: Array, rotation_speed: Scalar, kinematic_viscosity: Scalar, initial: Scalar
 ) -> Array:
-    """Core radius of the wake segments, growing by (eddy) diffusion.
+    """Core radius of wake segments, growing by (eddy) diffusion.
 
     rc^2 = rc0^2 + 4 alpha delta nu t with alpha = 1.25643 (Lamb-Oseen) and the eddy viscosity
     ratio delta of Squire 1965, held at 10 (Bhagwat and Leishman 2002 measure 1 to 100 on small
@@ -19,8 +19,8 @@ def core_radius(
 
     Parameters
     ----------
-    ages : (n_nodes,) array
-        Azimuths of the wake nodes behind the blade [rad].
+    ages : (n,) array
+        Azimuths behind the blade [rad]; `middles` of the nodes' for trailing segments.
     rotation_speed : float
         Rotation speed [rad/s].
     kinematic_viscosity : float
@@ -30,8 +30,24 @@ def core_radius(
 
     Returns
     -------
-    (n_nodes - 1,) array
-        Core radius at the middle of each segment [m].
+    (n,) array
+        Core radius at each age [m].
     """
-    time = 0.5 * (ages[1:] + ages[:-1]) / rotation_speed
+    time = ages / rotation_speed
     return jnp.sqrt(initial**2 + 4.0 * 1.25643 * 10.0 * kinematic_viscosity * time)
+
+
+def middles(ages: Array) -> Array:
+    """Ages of the middle of the segments between nodes.
+
+    Parameters
+    ----------
+    ages : (n_nodes,) array
+        Azimuths of the wake nodes behind the blade [rad].
+
+    Returns
+    -------
+    (n_nodes - 1,) array
+        Azimuths of the middles [rad].
+    """
+    return 0.5 * (ages[1:] + ages[:-1])

@@ -95,7 +95,7 @@ def helical_wake(
         Nodes of the filaments, blade by blade [m].
     """
     law, ages = transport.law, jnp.asarray(transport.ages)
-    speed, w, radius = state.speed, induced_velocity, rotor.radius
+    speed, w, radius = state.axial_speed, induced_velocity, rotor.radius
     time = ages / state.rotation_speed
     passage_time = 2.0 * jnp.pi / (rotor.n_blades * state.rotation_speed)
     drift = _outer_drift(law, time / passage_time, rotor.n_blades)
@@ -104,9 +104,13 @@ def helical_wake(
 
     # Continuity, with the velocity on the axis of the semi-infinite vortex cylinder,
     # V + w (1 + s / sqrt(1 + s^2)) (McCormick 1967, eq. 4-48), s in radii downstream: above the
-    # rotor where it hovers at negative thrust.
-    s = jnp.abs(speed + 1.5 * w) * time / radius
-    contraction = jnp.sqrt((speed + w) / (speed + w + w * s / jnp.sqrt(1.0 + s * s)))
+    # rotor where it hovers at negative thrust. At an angle V is a vector, and the stream along
+    # which s counts is the resultant.
+    def stream(induced: Scalar | Array) -> Array:
+        return jnp.hypot(state.edgewise_speed, speed + induced)
+
+    s = stream(1.5 * w) * time / radius
+    contraction = jnp.sqrt(stream(w) / stream(w + w * s / jnp.sqrt(1.0 + s * s)))
 
     r_over_R = jnp.hypot(trailing_nodes[:, 0], trailing_nodes[:, 1]) / radius
     outward = outer_part(r_over_R, law)[:, None]

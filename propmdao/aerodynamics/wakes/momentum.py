@@ -1,5 +1,9 @@
 """Momentum theory: the induced velocity at the disk of a rotor from its thrust.
 
+    T = 2 rho A w sqrt((V sin i)^2 + (V cos i + w)^2)               (Glauert 1926, ARC R&M 1026)
+
+with the incidence i between shaft and flight; in axial flight this is
+
     T = 2 rho A w (V + w)                                           (Glauert 1935, eq. I 1.13)
 
 In hover nothing tells up from down: a rotor that pushes the air up, at negative thrust, is the
@@ -8,6 +12,7 @@ mirror image of one that pushes it down, and so is its induced velocity.
 
 from __future__ import annotations
 
+import jax
 import jax.numpy as jnp
 from jax import Array
 
@@ -17,6 +22,7 @@ from propmdao.records.states import RotorState
 # The discriminant of momentum theory is kept above this (fraction of tip speed)^2, smoothly, so
 # that a wake always leaves the disk: thrust below the windmilling limit, or none at all in hover.
 _LEAST_SPEED_FRACTION = 5.0e-3
+_HALVINGS = 60  # of the bracket: what 64 bits hold
 
 
 def momentum_induced_velocity(thrust: Scalar, state: RotorState, radius: Scalar) -> Array:
@@ -27,20 +33,65 @@ def momentum_induced_velocity(thrust: Scalar, state: RotorState, radius: Scalar)
     thrust : float
         Thrust of all blades, negative when windmilling [N].
     state : RotorState
-        Rotation speed, flight speed and air of the rotor.
+        Rotation speed, flight speed, incidence and air of the rotor.
     radius : float
         Tip radius [m].
 
     Returns
     -------
     float
-        Induced velocity w, positive downstream, root of T = 2 rho A w (V + w) [m/s]; in hover
-        negative where the thrust is.
+        Induced velocity w along the shaft, positive downstream, root of Glauert's equation [m/s];
+        in hover negative where the thrust is.
     """
-    disk_area = jnp.pi * radius**2
-    upward = (state.speed == 0.0) & (jnp.asarray(thrust) < 0.0)
-    sign = jnp.where(upward, -1.0, 1.0)
-    x = 0.25 * state.speed**2 + sign * thrust / (2.0 * state.air.density * disk_area)
+    square = thrust / (2.0 * state.air.density * jnp.pi * radius**2)
     floor = (_LEAST_SPEED_FRACTION * (state.rotation_speed * radius)) ** 2
-    w = -0.5 * state.speed + jnp.sqrt(0.5 * (x + jnp.sqrt(x * x + 4.0 * floor * floor)))
+    axial = _axial_root(square, state.axial_speed, floor)
+    # Where both are traced, either root has to be finite, with its derivatives.
+    tilted = jnp.asarray(state.edgewise_speed) != 0.0
+    edgewise = jnp.where(tilted, state.edgewise_speed, state.rotation_speed * radius)
+    return jnp.where(tilted, _tilted_root(square, state.axial_speed, edgewise, floor), axial)
+
+
+def _axial_root(square: Scalar, speed: Scalar, floor: Scalar) -> Array:
+    """Root of T / (2 rho A) = w (V + w); `square` is the left side [m^2/s^2]."""
+    speed = jnp.asarray(speed)
+    upward = (speed == 0.0) & (jnp.asarray(square) < 0.0)
+    sign = jnp.where(upward, -1.0, 1.0)
+    x = 0.25 * speed**2 + sign * square
+    w = -0.5 * speed + jnp.sqrt(0.5 * (x + jnp.sqrt(x * x + 4.0 * floor * floor)))
     return sign * w
+
+
+def _tilted_root(square: Scalar, speed: Scalar, edgewise: Scalar, floor: Scalar) -> Array:
+    """Root of T / (2 rho A) = w sqrt(u^2 + (v + w)^2), for u that is not 0.
+
+    The right side rises with w everywhere where u^2 > v^2 / 8, beyond 19.5 deg of incidence, and
+    closer to axial flight above w = -v / 2 as there; where the thrust is below that, -v / 2 is all
+    there is to return. The floor fades as u grows: in axial flight, with h = w + v / 2, it is
+    h^2 - floor^2 / h^2 = v^2 / 4 + T / (2 rho A).
+    """
+    fixed = jax.lax.stop_gradient(
+        jnp.broadcast_arrays(*(jnp.asarray(x, float) for x in (square, speed, edgewise, floor)))
+    )
+
+    def halved(_: int, bracket: tuple[Array, Array]) -> tuple[Array, Array]:
+        low, high = bracket
+        middle = 0.5 * (low + high)
+        above = _excess(middle, *fixed) > 0.0
+        return jnp.where(above, low, middle), jnp.where(above, middle, high)
+
+    # With |w| > 2 |v| the resultant is above |w| / 2, and so |w| below sqrt(2 |T| / (2 rho A)).
+    t, v, u, least = fixed
+    reach = 2.0 * (jnp.sqrt(jnp.abs(t)) + jnp.abs(v) + jnp.sqrt(least))
+    lowest = jnp.where((v <= 0.0) | (u**2 > 0.125 * v**2), -reach, -0.5 * v)
+    w = jax.lax.fori_loop(0, _HALVINGS, halved, (lowest, reach))[1]
+    # One Newton step, in which alone the arguments count, gives the derivatives.
+    encloses = _excess(lowest, *fixed) < 0.0
+    slope = jax.jvp(lambda at: _excess(at, *fixed), (w,), (jnp.ones_like(w),))[1]
+    return w - jnp.where(encloses, _excess(w, square, speed, edgewise, floor) / slope, 0.0)
+
+
+def _excess(w: Array, square: Scalar, speed: Scalar, edgewise: Scalar, floor: Scalar) -> Array:
+    h = w + 0.5 * speed
+    least = floor**2 * h / (h * h + edgewise**2) ** 1.5
+    return w * jnp.hypot(edgewise, speed + w) - least - square

@@ -19,7 +19,7 @@ from jax import Array
 from propmdao.aerodynamics.sections.laws import ViscousSections
 from propmdao.aerodynamics.sections.polars.table import curve_coefficients, section_curves
 from propmdao.aerodynamics.solutions.case import RotorCase
-from propmdao.aerodynamics.solutions.result import RotorLoads
+from propmdao.aerodynamics.solutions.result import RotorLoads, TiltedLoads
 from propmdao.analysis.elastic.materials import ElasticError
 from propmdao.geometry.blade import Blade
 from propmdao.geometry.lattice import strip_interpolation, strip_radii
@@ -86,8 +86,8 @@ class Solved(NamedTuple):
         Closed surface of the blade.
     case : RotorCase
         Case that was solved.
-    loads : RotorLoads
-        Loads of the case.
+    loads : RotorLoads or TiltedLoads
+        Loads of the case; elastic blades are of axial flow, the former.
     state : RotorState
         How the rotor turns and flies, which a thrust required decides.
     """
@@ -95,7 +95,7 @@ class Solved(NamedTuple):
     blade: Blade
     panels: Panels
     case: RotorCase
-    loads: RotorLoads
+    loads: RotorLoads | TiltedLoads
     state: RotorState
 
 
@@ -186,6 +186,7 @@ class _Hold:
         """How far the blade gives under loads."""
         sections = solved.case.sections
         assert sections is not None  # `LoadModel` has refused inviscid flow
+        assert isinstance(solved.loads, RotorLoads)  # an incidence has been refused before
         loads = _air_loads(solved.loads, sections, solved.state, self.arms[0])
         moved, turn, stable = _given(
             self.beam,

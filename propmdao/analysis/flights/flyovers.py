@@ -60,6 +60,7 @@ def fly_over(analysis: Analysis, flight: Flight, *, sound: bool = False) -> Flyo
     -----
     Absorption uses the direct path's length for the reflected path as well.
     """
+    analysis.point.require_axial("a flyover")
     state = analysis.state
     air, sound_speed = state.air, float(state.air.sound_speed)
     speed = float(state.speed)

@@ -64,6 +64,7 @@ def write_case(analysis: Analysis, folder: str | Path, n_times: int = 1024) -> N
     ValueError
         If the propeller does not turn, nobody listens, or the folder cannot be written.
     """
+    analysis.point.require_axial("a PSU-WOPWOP case")
     state, observers = analysis.state, analysis.listening.observers
     omega, speed, air = float(state.rotation_speed), float(state.speed), state.air
     if not omega > 0.0:

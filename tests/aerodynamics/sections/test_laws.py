@@ -28,7 +28,9 @@ def laws(name, delay):
     sections = viscous_sections(polars_for(propeller), blade, at, delay)
     strips = blade_strips(nodes, vortex_rings(nodes), 0.5 * propeller.diameter)
     air = Air(density=1.2, sound_speed=340.0)
-    return section_laws(strips, OMEGA * strips.radius, 8.0, air, sections)
+    speed = jnp.hypot(OMEGA * strips.radius, 8.0)
+    tip_speed = 0.5 * OMEGA * propeller.diameter
+    return section_laws(strips, speed, tip_speed / np.hypot(tip_speed, 8.0), air, sections)
 
 
 @pytest.fixture(scope="module", params=["apcsf_11x4.7_uiuc", "apce_10x7_uiuc"])

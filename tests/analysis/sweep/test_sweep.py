@@ -70,10 +70,11 @@ def test_rows_begin_with_the_point_and_all_that_was_asked_of_it(
     path = tmp_path / "sweep.csv"
     sweep(propeller, [{"rpm": 3000.0}], path)
     (row,) = rows_of(path)
-    asked = "propeller blade rpm speed rho twist_offset_deg chord_factor diameter n_blades"
+    asked = "propeller blade rpm speed incidence_deg rho twist_offset_deg chord_factor diameter"
+    asked += " n_blades"
     asked += " viscous stall_delay broadband trip surroundings settings"
-    assert set(list(row)[:15]) == set(asked.split())
-    said = {name: row[name] for name in list(row)[9:15]}
+    assert set(list(row)[:16]) == set(asked.split())
+    said = {name: row[name] for name in list(row)[10:16]}
     assert said == {
         "viscous": "True",
         "stall_delay": "True",

@@ -1,0 +1,243 @@
+"""The lattice of a whole period held to the lift that its sections have in viscous flow.
+
+The equations are those of `recambering`, of every strip at every azimuth, solved together: by the
+wake each strip acts on all others at all azimuths, and where the retreating side stalls, one
+azimuth after the other finds no solution.
+
+Where the air comes from behind, the angle alpha = Gamma / (pi c W) + alpha_0 - delta of the lattice
+means nothing. There the angle follows from how the section moves and from the induced velocity at
+the disk, alpha = atan2(U_n, U_t) in the axes of its chord, which the polars know up to 180 deg, and
+the mean over the span is left out. It counts from a share U_t / W of the tangential speed below
+`_REVERSED`, relative to that of the mean over a turn, so that axial flight never has any.
+Attached flow that changes in time needs nothing of its own: the lattice has it. Dynamic stall is
+not modelled.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+from jax import Array
+
+from propmdao.aerodynamics.lattice.strips import Strips
+from propmdao.aerodynamics.sections.laws import SectionLaws
+from propmdao.aerodynamics.sections.recambering import SectionStates
+from propmdao.records.pytrees import record
+
+_TOLERANCE = 1.0e-9  # in the lift coefficient
+_MAX_STEPS = 100
+_LONGEST_STEP = np.radians(15.0)
+_FIRST_TIME = 3.0  # of the pseudo-time, in units of the time in which a thin section settles
+# Share of the tangential speed at which lattice and motion count half each for the angle of attack,
+# and half of the width over which one takes over from the other.
+_REVERSED, _BLEND = 0.2, 0.1
+
+
+@record
+class PeriodFlow:
+    """Strips of the lattice at all azimuths, linear in their recambering.
+
+    Attributes
+    ----------
+    strips : Strips
+        Sections of blade 1.
+    relative_speed : (n_azimuths, ns) array
+        W, speed of the air relative to the sections [m/s].
+    attached : (n_azimuths, ns) array
+        Share of the lattice in the angle of attack: 1, and 0 where the air comes from behind.
+    motion_angle : (n_azimuths, ns) array
+        Angle of attack by the motion of the section and the induced velocity at the disk [rad].
+    circulation : (n_azimuths, ns) array
+        Circulation of the strips without recambering [m^2/s].
+    response : (n_azimuths * ns, n_azimuths * ns) array
+        Change of the circulation of each strip at each azimuth per radian of recambering of each
+        strip at each azimuth [m^2/s].
+    """
+
+    strips: Strips
+    relative_speed: Array
+    attached: Array
+    motion_angle: Array
+    circulation: Array
+    response: Array
+
+    def angle_and_lift(self, recambering: Array) -> tuple[Array, Array]:
+        """Angle of attack [rad] and lift coefficient of the lattice, (n_azimuths, ns) each."""
+        change = (self.response @ recambering.ravel()).reshape(recambering.shape)
+        circulation = self.circulation + change
+        speed_chord = self.relative_speed * self.strips.chord
+        alpha = circulation / (jnp.pi * speed_chord) + self.strips.zero_lift_angle - recambering
+        return alpha, 2.0 * circulation / speed_chord
+
+
+def attached_share(tangential_share: Array) -> Array:
+    """Share of the lattice in the angle of attack, smooth.
+
+    Parameters
+    ----------
+    tangential_share : array
+        Tangential share U_t / W of the speed, relative to that of the mean over a turn.
+
+    Returns
+    -------
+    array
+        1 in flow from ahead, 0 in flow from behind.
+    """
+    x = jnp.clip(0.5 + 0.5 * (tangential_share - _REVERSED) / _BLEND, 0.0, 1.0)
+    return x * x * (3.0 - 2.0 * x)
+
+
+def period_states(
+    flow: PeriodFlow, recambering: Array, laws: SectionLaws | None
+) -> tuple[SectionStates, SectionStates]:
+    """How the sections work with a given recambering.
+
+    Parameters
+    ----------
+    flow : PeriodFlow
+        Strips of the lattice at all azimuths.
+    recambering : (n_azimuths, ns) array
+        Recambering of each strip [rad].
+    laws : SectionLaws or None
+        Polars of the strips, with a leading axis of azimuths; None takes the lift of the lattice,
+        and no drag.
+
+    Returns
+    -------
+    by_lattice, by_motion : SectionStates
+        Flow of the sections, (n_azimuths, ns) each: with the angle of the lattice and with that of
+        the motion, of which `attached` is the share of the first. The lift coefficient, what it
+        borrows and the residual are those of both together.
+    """
+    alpha, lift = flow.angle_and_lift(recambering)
+    zero = jnp.zeros_like(lift)
+    if laws is None:
+        states = SectionStates(flow.relative_speed, alpha, lift, zero, zero, zero)
+        return states, states
+    held, cd, borrowed, moving_cd = _held(flow, laws, alpha)
+    common = held, lift - held
+
+    def states_of(angle: Array, drag: Array) -> SectionStates:
+        return SectionStates(flow.relative_speed, angle, common[0], drag, borrowed, common[1])
+
+    return states_of(alpha, cd), states_of(flow.motion_angle, moving_cd)
+
+
+def solve_period_recambering(flow: PeriodFlow, laws: SectionLaws) -> Array:
+    """Recambering that brings lattice and polars to the same lift at every azimuth.
+
+    Newton's method in pseudo-time: as if every recambering moved towards its root at the rate of a
+    thin section, dx/dt = -R / (2 pi), in implicit steps that grow as the residual falls (switched
+    evolution relaxation, Mulder and van Leer, J. Comput. Phys. 59, 1985). Past stall, plain Newton
+    steps and those of a line search end in circles, for the residual has minima that are no roots.
+    It begins at no recambering, so that the answer does not depend on what was computed before.
+    Derivatives are those of the implicit function.
+
+    Parameters
+    ----------
+    flow : PeriodFlow
+        Strips of the lattice at all azimuths.
+    laws : SectionLaws
+        Polars of the strips, with a leading axis of azimuths.
+
+    Returns
+    -------
+    (n_azimuths, ns) array
+        Recambering of each strip [rad]; where the search fails, the last one tried, whose residual
+        is not 0.
+    """
+    fixed_flow, fixed_laws = jax.lax.stop_gradient((flow, laws))
+    shape = flow.circulation.shape
+    # Where the air hardly moves, lift coefficients are large and recambering does little: residuals
+    # count by circulation, and no step is too long where the angle is not that of the lattice.
+    speed = fixed_flow.relative_speed
+    weight = speed / speed.mean(axis=0)
+    longest = _LONGEST_STEP / jnp.maximum(fixed_flow.attached, _LONGEST_STEP / 1.0e6)
+
+    def norm(missing: Array) -> Array:
+        return jnp.sqrt(((weight * missing) ** 2).mean())
+
+    def unfinished(state: _Newton) -> Array:
+        largest = jnp.abs(weight * state.missing).max()
+        return (state.n_trials < _MAX_STEPS) & ~(largest <= _TOLERANCE)
+
+    def step(state: _Newton) -> _Newton:
+        time = _FIRST_TIME * norm(first) / norm(state.missing)
+        inertia = 2.0 * jnp.pi / time * jnp.diag(fixed_flow.attached.ravel())
+        change = jnp.linalg.solve(state.slope + inertia, state.missing.ravel()).reshape(shape)
+        # Each strip by itself: one that has just stalled holds up no other.
+        delta = state.recambering - jnp.clip(change, -longest, longest)
+        return _Newton(
+            state.n_trials + 1, delta, *_residual_and_slope(fixed_flow, fixed_laws, delta)
+        )
+
+    none = jnp.zeros(shape)
+    first, slope = _residual_and_slope(fixed_flow, fixed_laws, none)
+    end = jax.lax.while_loop(unfinished, step, _Newton(0, none, first, slope))
+    # One more Newton step, in which alone the arguments count: its slope is that of the solution.
+    delta, slope = jax.lax.stop_gradient((end.recambering, end.slope))
+    missing = _residual(flow, laws, delta)
+    return delta - jnp.linalg.solve(slope, missing.ravel()).reshape(shape)
+
+
+class _Newton(NamedTuple):
+    """State of Newton's method."""
+
+    n_trials: Array | int
+    recambering: Array
+    missing: Array
+    slope: Array
+
+
+def _beyond_thin(laws: SectionLaws, alpha: Array) -> tuple[Array, Array]:
+    return jax.vmap(lambda at, angle: at.beyond_thin(angle))(laws, alpha)
+
+
+def _thin(laws: SectionLaws, alpha: Array) -> Array:
+    return 2.0 * jnp.pi * (alpha - laws.zero_lift_angle)
+
+
+def _mean(flow: PeriodFlow, laws: SectionLaws) -> Array:
+    """Means over the span of what flows from ahead, times the share of it: (n_azimuths, ns, ns)."""
+    weight = laws.mean * flow.attached[:, None, :]
+    total = weight.sum(axis=-1, keepdims=True)
+    share = flow.attached[:, :, None]
+    return share * weight / jnp.where(share > 0.0, total, 1.0)
+
+
+def _held(flow: PeriodFlow, laws: SectionLaws, alpha: Array) -> tuple[Array, Array, Array, Array]:
+    """Lift and drag by the angle of the lattice, lift borrowed, drag by the angle of the motion."""
+    share = flow.attached
+    more, cd = _beyond_thin(laws, alpha)
+    moving_more, moving_cd = _beyond_thin(laws, flow.motion_angle)
+    moving = _thin(laws, flow.motion_angle) + moving_more
+    near = jnp.einsum("kij,kj->ki", _mean(flow, laws), more)
+    held = share * _thin(laws, alpha) + near + (1.0 - share) * moving
+    return held, cd, near - share * more, moving_cd
+
+
+def _residual(flow: PeriodFlow, laws: SectionLaws, recambering: Array) -> Array:
+    """Lift coefficient of the lattice less that of the polars: (n_azimuths, ns)."""
+    alpha, lift = flow.angle_and_lift(recambering)
+    return lift - _held(flow, laws, alpha)[0]
+
+
+def _residual_and_slope(
+    flow: PeriodFlow, laws: SectionLaws, recambering: Array
+) -> tuple[Array, Array]:
+    """Residual (n_azimuths, ns) and its slope, a matrix of all strips at all azimuths."""
+    (n, ns), size = recambering.shape, recambering.size
+    alpha, lift = flow.angle_and_lift(recambering)
+    # A section's lift depends on its own angle alone: one direction gives all slopes.
+    tangent = jnp.ones_like(alpha)
+    by_alpha = jax.jvp(lambda a: _beyond_thin(laws, a)[0], (alpha,), (tangent,))[1]
+    held_slope = _mean(flow, laws) * by_alpha[:, None, :]
+    held_slope += 2.0 * jnp.pi * flow.attached[:, :, None] * jnp.eye(ns)
+    per_circulation = 1.0 / (flow.relative_speed * flow.strips.chord).reshape(-1, 1)
+    angle_slope = per_circulation / jnp.pi * flow.response - jnp.eye(size)
+    held_change = jnp.einsum("kij,kjm->kim", held_slope, angle_slope.reshape(n, ns, size))
+    slope = 2.0 * per_circulation * flow.response - held_change.reshape(size, size)
+    return lift - _held(flow, laws, alpha)[0], slope
