@@ -30,7 +30,7 @@ from propmdao.records.pytrees import record
 _TOLERANCE = 1.0e-9  # in the lift coefficient
 _MAX_STEPS = 100
 _LONGEST_STEP = np.radians(15.0)
-_FIRST_TIME = 3.0  # of the pseudo-time, in units of the time in which a thin section settles
+_FIRST_TIME = 0.5  # first pseudo-time step, in times in which a thin section settles
 # Share of the tangential speed at which lattice and motion count half each for the angle of attack,
 # and half of the width over which one takes over from the other.
 _REVERSED, _BLEND = 0.2, 0.1
