@@ -40,7 +40,7 @@ class AerodynamicsComp(NodesComp, RootComponent):
     """Steady vortex lattice with its helical wake, hover included.
 
     With `num_nodes` everything but the blade, `lattice_nodes`, `diameter`, `section_polars` and
-    `section_thickness`, has a leading axis of that many operating points.
+    `section_thickness_over_chord`, has a leading axis of that many operating points.
 
     Inputs
     ------
@@ -57,7 +57,7 @@ class AerodynamicsComp(NodesComp, RootComponent):
     section_polars : (n_spanwise, 3, n_re, n_alpha) array
         Polars of the sections in the middle of the strips, as `GeometryComp` gives them; an input
         if there is the option `polars`.
-    section_thickness : (n_spanwise,) array
+    section_thickness_over_chord : (n_spanwise,) array
         Maximum thickness over chord there, 0 if nothing gives it: where the drag of shocks begins;
         an input if there is the option `polars`.
     sound_speed : float

@@ -92,7 +92,7 @@ class GeometryComp(JaxComponent):
     section_polars : (n_spanwise, 3, n_re, n_alpha) array
         Lift, logarithm of drag and moment coefficients of the sections in the middle of the strips,
         the values of a `PolarTable`; an output if there is the option `polars`.
-    section_thickness : (n_spanwise,) array
+    section_thickness_over_chord : (n_spanwise,) array
         Maximum thickness over chord there, from which shocks begin; an output with the polars.
 
     Options
@@ -143,7 +143,7 @@ class GeometryComp(JaxComponent):
             ("lattice_nodes", "m", "Corner points of the vortex lattice of blade 1."),
             ("surface_nodes", "m", "Points of the section contours of blade 1."),
             ("section_polars", None, "Polars of the sections in the middle of the strips."),
-            ("section_thickness", None, "Maximum thickness over chord there."),
+            ("section_thickness_over_chord", None, "Maximum thickness over chord there."),
         ):
             if name in outputs:
                 self.add_output(name, val=np.asarray(outputs[name]), units=units_of, desc=desc)
@@ -178,5 +178,5 @@ def _geometry(inputs: Arrays, constants: Any, static: Fidelity) -> Arrays:
     outputs = {"lattice_nodes": meshes.lattice, "surface_nodes": meshes.surface}
     if polars is not None:
         outputs["section_polars"] = blade_tables(polars, blade, radii.strips).values
-        outputs["section_thickness"] = radii.strips.linear @ blade.thickness_over_chord
+        outputs["section_thickness_over_chord"] = radii.strips.linear @ blade.thickness_over_chord
     return outputs

@@ -31,7 +31,8 @@ class RotationSpeedComp(NodesComp):
     The rule of the thesis. Between bounds as near as its 4000 and 5000 rpm it misses the thrust
     required by some per cent, and it is there to show by how much; `TrimmedAerodynamicsComp` does
     not miss it. With `num_nodes` everything but the blade, `lattice_nodes`, `diameter`,
-    `section_polars` and `section_thickness`, has a leading axis of that many operating points.
+    `section_polars` and `section_thickness_over_chord`, has a leading axis of that many operating
+    points.
 
     Inputs
     ------

@@ -97,7 +97,9 @@ def add_rotor_inputs(component: NodesComp) -> RotorConstants:
         of_section = polars.values.shape[3:]
         shape = (fidelity.n_spanwise, *of_section)
         component.add_input("section_polars", shape=shape, tags=STATIC)
-        component.add_input("section_thickness", np.zeros(fidelity.n_spanwise), tags=STATIC)
+        component.add_input(
+            "section_thickness_over_chord", np.zeros(fidelity.n_spanwise), tags=STATIC
+        )
         add_point_inputs(component, ["sound_speed"])
         grid = PolarTable(polars.alpha, polars.log_re, jnp.zeros((0, *of_section)), polars.mach)
     wake = wake_transport(options["wake"], fidelity.wake)
@@ -130,7 +132,7 @@ def rotor_at(
         table = dataclasses.replace(
             constants.grid,
             values=inputs["section_polars"],
-            thickness=inputs["section_thickness"],
+            thickness=inputs["section_thickness_over_chord"],
         )
         sections = ViscousSections(table, constants.stall_delay)
     rotor = RotorGeometry(inputs["lattice_nodes"], 0.5 * inputs["diameter"][0], n_blades)

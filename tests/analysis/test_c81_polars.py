@@ -46,10 +46,10 @@ def c81(machs: list[float], drag_rise: float) -> str:
 def test_a_rotor_at_tip_mach_half(
     tmp_path: Path, machs: list[float], drag_rise: float, thrust: float, torque: float
 ) -> None:
-    """APC-SF 11x4.7 at 12000 rev/min, 5 m/s, all of its sections with one polar."""
+    """APC-SF 11x4.7, photographed, at 12000 rev/min, 5 m/s, all of its sections with one polar."""
     file = tmp_path / "my.c81"
     file.write_text(c81(machs, drag_rise))
-    propeller, table = load_propeller("apcsf_11x4.7"), read_c81(file)
+    propeller, table = load_propeller("apcsf_11x4.7_uiuc"), read_c81(file)
     polars = polars_for(propeller, {"e63": table, "naca4412": table})
     loads = analyze(propeller, rpm=12000.0, speed=5.0, polars=polars).loads
     assert loads.thrust == pytest.approx(thrust, rel=1e-3)

@@ -30,7 +30,7 @@ SCALES = {
     "lattice_nodes": 1e-5,
     "surface_nodes": 1e-5,
     "section_polars": 1e-3,
-    "section_thickness": 1e-3,
+    "section_thickness_over_chord": 1e-3,
     "load_position": 1e-5,
     "load_force": 1e-4,
     "section_speed": 0.1,

@@ -72,7 +72,7 @@ def viscous(meshes, problem, rotor, polars):
         prob = problem(
             AerodynamicsComp(**{**rotor, **options}, polars=polars),
             section_polars=meshes.get_val("section_polars"),
-            section_thickness=meshes.get_val("section_thickness"),
+            section_thickness_over_chord=meshes.get_val("section_thickness_over_chord"),
             rpm=4200.0,
             speed=speed,
         )

@@ -25,7 +25,7 @@ def problem(meshes, small, polars, problem_of):
     def problem(kind, num_nodes, values, **options):
         options = {"n_blades": 2, "fidelity": small, "polars": polars, **options}
         prob = problem_of(kind(num_nodes=num_nodes, **options), **values)
-        of_blade = {"lattice_nodes", "diameter", "section_polars", "section_thickness"}
+        of_blade = {"lattice_nodes", "diameter", "section_polars", "section_thickness_over_chord"}
         for name in of_blade & set(prob.model.comp.get_io_metadata(iotypes="input")):
             prob.set_val(name, meshes.get_val(name))
         prob.run_model()

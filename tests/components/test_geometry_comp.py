@@ -50,7 +50,7 @@ def test_polars_of_the_sections_are_those_of_the_blade(meshes, propeller, polars
     middle = strip_interpolation(stations, 4)
     table = blade_tables(polars, Blade.from_propeller(propeller), middle)
     assert_allclose(meshes.get_val("section_polars"), table.values, atol=1e-14)
-    assert_allclose(meshes.get_val("section_thickness"), table.thickness, rtol=1e-14)
+    assert_allclose(meshes.get_val("section_thickness_over_chord"), table.thickness, rtol=1e-14)
 
 
 def test_partials_with_polars(problem, propeller, polars, assert_directional):

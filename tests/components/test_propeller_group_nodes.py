@@ -47,7 +47,7 @@ BLADE = {
     "lattice_nodes",
     "surface_nodes",
     "section_polars",
-    "section_thickness",
+    "section_thickness_over_chord",
     "band_frequency",
 }
 
