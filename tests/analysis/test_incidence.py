@@ -2,9 +2,9 @@
 
 import numpy as np
 import pytest
-from propmdao.analysis.flyovers import fly_over
 
 import propmdao as pm
+from propmdao.analysis.flights.flyovers import fly_over
 from propmdao.analysis.single_point import FastEdgewiseWarning, analyze
 from propmdao.records.fidelity import Fidelity
 from propmdao.records.wake_law import WakeGrid

@@ -29,7 +29,7 @@ COARSE = wake_transport(WakeLaw(), WakeGrid(2.0, 2.0, 1.5, 40.0))
 def rotor(slow_flyer):
     """The rotor at an operating point, inviscid or with its polars."""
     nodes = slow_flyer.nodes(NC, NS)
-    polars = polars_for(load_propeller("apcsf_11x4.7"))
+    polars = polars_for(load_propeller("apcsf_11x4.7_uiuc"))
     middle = strip_interpolation(slow_flyer.stations, NS)
     sections = viscous_sections(polars, slow_flyer.blade, middle)
 

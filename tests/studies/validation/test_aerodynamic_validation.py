@@ -192,7 +192,7 @@ def test_prescribed_wake_has_the_thrust_of_the_one_that_moves_as_it_says(import_
 
 def test_drift_of_the_wake_is_changed_in_all_its_parts(import_study):
     sensitivity = import_study("aerodynamic_sensitivity")
-    variants = {label: how for label, _, how in sensitivity.variants(load_propeller(CASE), False)}
+    variants = {label: how for label, _, how in sensitivity.variants(load_propeller(CASE))}
     wake = variants["drift of the wake x 1.5"].keywords["wake"]
     default = WakeLaw()
     for name in ("before_passage", "after_passage", "inside"):
