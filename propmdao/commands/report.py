@@ -258,7 +258,9 @@ def _places(observers: Sequence[dict[str, Any]]) -> list[str]:
 
 
 def _operating_points(analyses: Sequence[dict[str, Any]]) -> Table:
-    table = _table()
+    gives = analyses[0]["deflection"] is not None
+    # With the twist of an elastic blade there are nine columns, which have to fit a terminal of 80.
+    table = _table(padding=0 if gives else 1)
     columns = {
         "rpm": ("rpm", ".1f"),
         "J": ("J", ".4f"),
@@ -275,7 +277,6 @@ def _operating_points(analyses: Sequence[dict[str, Any]]) -> Table:
         columns["figure_of_merit"] = ("figure\nof merit", ".3f")
     for heading, _ in columns.values():
         table.add_column(heading, justify="right")
-    gives = analyses[0]["deflection"] is not None
     if gives:
         table.add_column(f"twist at\n{_TWIST_AT} R\ndeg", justify="right")
     for analysis in analyses:
