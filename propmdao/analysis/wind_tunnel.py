@@ -286,10 +286,8 @@ def zero_thrust_ratio(
         points = dataclasses.replace(measured, J=factor * measured.J)
         return float(np.mean(evaluate(propeller, points, 0.0).CT))
 
-    factor = _root(thrust, (1.0, 0.95), _J_TOLERANCE)
-    if factor is None:
-        raise MeasurementError(f"no advance ratio of '{propeller.name}' gives zero thrust")
-    return factor
+    missing = "no advance ratio of '{}' gives zero thrust"
+    return _root(thrust, (1.0, 0.95), _J_TOLERANCE, propeller, missing)
 
 
 def zero_thrust_twist_deg(
@@ -323,12 +321,8 @@ def zero_thrust_twist_deg(
     def thrust(offset_deg: float) -> float:
         return float(np.mean(evaluate(propeller, measured, offset_deg).CT))
 
-    offset = _root(thrust, (0.0, 1.0), _TWIST_TOLERANCE)
-    if offset is None:
-        raise MeasurementError(
-            f"no twist offset brings the thrust of '{propeller.name}' to zero where it was measured"
-        )
-    return offset
+    missing = "no twist offset brings the thrust of '{}' to zero where it was measured"
+    return _root(thrust, (0.0, 1.0), _TWIST_TOLERANCE, propeller, missing)
 
 
 def calibrated_twist_deg(
@@ -356,22 +350,24 @@ def calibrated_twist_deg(
         If no offset is found.
     """
 
-    def missing(offset_deg: float) -> float:
+    def excess(offset_deg: float) -> float:
         return float(np.mean(evaluate(propeller, static, offset_deg).CT / static.CT - 1.0))
 
-    offset = _root(missing, (0.0, 1.0), _TWIST_TOLERANCE)
-    if offset is None:
-        raise MeasurementError(
-            f"no twist offset brings the mean CT of '{propeller.name}' to the measured one"
-        )
-    return offset
+    missing = "no twist offset brings the mean CT of '{}' to the measured one"
+    return _root(excess, (0.0, 1.0), _TWIST_TOLERANCE, propeller, missing)
 
 
 def _root(
-    function: Callable[[float], float], start: tuple[float, float], tolerance: float
-) -> float | None:
-    """Root by the secant method, None where it finds none."""
+    function: Callable[[float], float],
+    start: tuple[float, float],
+    tolerance: float,
+    propeller: Propeller,
+    missing: str,
+) -> float:
+    """Root by the secant method, or a `MeasurementError`: `missing`, of the propeller by name."""
     solution = root_scalar(
         function, method="secant", x0=start[0], x1=start[1], xtol=tolerance, maxiter=12
     )
-    return float(solution.root) if solution.converged and np.isfinite(solution.root) else None
+    if not (solution.converged and np.isfinite(solution.root)):
+        raise MeasurementError(missing.format(propeller.name))
+    return float(solution.root)

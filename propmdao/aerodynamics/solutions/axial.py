@@ -10,9 +10,6 @@ needs of it (`propmdao.aerodynamics.trim.Solver`).
 
 from __future__ import annotations
 
-import dataclasses
-
-import jax
 import jax.numpy as jnp
 from jax import Array
 
@@ -25,11 +22,20 @@ from propmdao.aerodynamics.solutions.lattice_loads import (
     lattice_geometry,
     loads_with_wake,
 )
-from propmdao.aerodynamics.solutions.result import RotorLoads, sections_agree, strip_loads
+from propmdao.aerodynamics.solutions.result import (
+    RotorLoads,
+    sections_agree,
+    strip_loads,
+    unless_still,
+)
 from propmdao.aerodynamics.solutions.roots import at_root, decreasing_root
 from propmdao.aerodynamics.vortices.cores import core_radius, middles
 from propmdao.aerodynamics.wakes.helical import helical_wake
-from propmdao.aerodynamics.wakes.momentum import momentum_induced_velocity
+from propmdao.aerodynamics.wakes.momentum import (
+    lowest_induced_velocity,
+    momentum_induced_velocity,
+    within_momentum_theory,
+)
 from propmdao.records.loads import PointLoads
 from propmdao.records.pytrees import Scalar, record
 from propmdao.runtime.compilation import compiled
@@ -74,11 +80,7 @@ def flow_at(case: RotorCase) -> AxialFlow:
     AxialFlow
         The case with its lattice, all numbers as floats.
     """
-    case = dataclasses.replace(
-        case,
-        rotor=jax.tree.map(lambda x: jnp.asarray(x, float), case.rotor),
-        state=jax.tree.map(lambda x: jnp.asarray(x, float), case.state),
-    )
+    case = case.in_floats()
     return AxialFlow(case, lattice_geometry(case.rotor))
 
 
@@ -167,11 +169,9 @@ def solve(case: RotorCase, thrust_guess: Scalar = 0.0) -> RotorLoads:
             loads = evaluate(params, w)
             return residual(params, w, loads), loads
 
-        # In hover the air may go either way.
-        hover = state.speed == 0.0
         w, loads = decreasing_root(
             trial,
-            jnp.where(hover, -tip_speed, -0.5 * state.speed + 1.0e-6 * tip_speed),
+            lowest_induced_velocity(state, flow.case.rotor.radius),
             tip_speed,
             jnp.where(thrust_guess == 0.0, _GUESS * tip_speed, known),
             _TOLERANCE,
@@ -258,10 +258,9 @@ def rotor_loads(
     rotor, state = flow.case.rotor, flow.case.state
     n_blades, w = rotor.n_blades, induced_velocity_at_disk
     thrust = n_blades * loads.thrust
-    tip_speed, area = state.rotation_speed * rotor.radius, jnp.pi * rotor.radius**2
+    tip_speed = state.rotation_speed * rotor.radius
     agrees = jnp.abs(induced_velocity(flow, thrust) - w) < 1.0e-6 * tip_speed
-    windmilling_limit = -0.5 * area * state.air.density * state.speed**2
-    within_momentum_theory = (state.speed == 0.0) | (thrust > windmilling_limit)
+    within = within_momentum_theory(thrust, state, rotor.radius)
     strip_thrust, strip_torque = strip_loads(loads)
     return RotorLoads(
         thrust=thrust,
@@ -273,30 +272,5 @@ def rotor_loads(
         point_loads=PointLoads(loads.position, -loads.force),
         strips=flow.lattice.strips,
         sections=loads.sections,
-        converged=agrees & within_momentum_theory & sections_agree(loads.sections),
+        converged=agrees & within & sections_agree(loads.sections),
     )
-
-
-def unless_still(turning: Array, loads: RotorLoads) -> RotorLoads:
-    """Zero loads where the propeller does not turn.
-
-    Parameters
-    ----------
-    turning : bool
-        Whether the propeller turns.
-    loads : RotorLoads
-        Loads of the propeller that turns.
-
-    Returns
-    -------
-    RotorLoads
-        Loads that were passed in or, at rest, zeros, which count as converged.
-    """
-    still = jax.tree.map(jnp.zeros_like, loads)
-    still = dataclasses.replace(
-        still,
-        point_loads=PointLoads(loads.point_loads.position, still.point_loads.force),
-        strips=loads.strips,
-        converged=jnp.asarray(True),
-    )
-    return jax.tree.map(lambda moving, still: jnp.where(turning, moving, still), loads, still)

@@ -4,6 +4,9 @@ from __future__ import annotations
 
 import dataclasses
 
+import jax
+import jax.numpy as jnp
+
 from propmdao.aerodynamics.rotor_geometry import RotorGeometry
 from propmdao.aerodynamics.sections.laws import ViscousSections
 from propmdao.aerodynamics.wakes.helical import WakeTransport, wake_transport
@@ -39,3 +42,10 @@ class RotorCase:
     def turning(self, rotation_speed: Scalar) -> RotorCase:
         """The same case at another rotation speed [rad/s]."""
         return dataclasses.replace(self, state=self.state.turning(rotation_speed))
+
+    def in_floats(self) -> RotorCase:
+        """The same case with all numbers of its rotor and state as floats."""
+        rotor, state = (
+            jax.tree.map(lambda x: jnp.asarray(x, float), part) for part in (self.rotor, self.state)
+        )
+        return dataclasses.replace(self, rotor=rotor, state=state)

@@ -13,7 +13,7 @@ from jax import Array
 
 from propmdao.aerodynamics.solutions import axial
 from propmdao.aerodynamics.solutions.case import RotorCase
-from propmdao.aerodynamics.solutions.result import RotorLoads
+from propmdao.aerodynamics.solutions.result import RotorLoads, unless_still
 from propmdao.records.pytrees import Scalar
 
 
@@ -39,7 +39,7 @@ def steady_at(induced_velocity: Scalar, case: RotorCase) -> tuple[RotorLoads, Ar
     loads = axial.loads_at(flow, w)
     momentum = axial.induced_velocity(flow, case.rotor.n_blades * loads.thrust)
     residual = jnp.where(turning, momentum, 0.0) - w
-    return axial.unless_still(turning, axial.rotor_loads(flow, w, loads)), residual
+    return unless_still(turning, axial.rotor_loads(flow, w, loads)), residual
 
 
 def trimmed_at(

@@ -321,8 +321,10 @@ def _period_laws(
 
 
 def _derivative(n_azimuths: int) -> np.ndarray:
-    """Matrix that differentiates a Fourier series by its azimuths; the highest harmonic of an even
-    number of them has no derivative there."""  # noqa: D205, D209
+    """Matrix that differentiates a Fourier series by its azimuths.
+
+    The highest harmonic of an even number of them has no derivative there.
+    """
     order = np.fft.fftfreq(n_azimuths, 1.0 / n_azimuths)
     order[np.abs(order) == n_azimuths / 2] = 0.0
     spectrum = 1j * order[:, None] * np.fft.fft(np.eye(n_azimuths), axis=0)

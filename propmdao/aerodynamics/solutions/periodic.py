@@ -11,9 +11,6 @@ needs of it (`propmdao.aerodynamics.trim.Solver`).
 
 from __future__ import annotations
 
-import dataclasses
-
-import jax
 import jax.numpy as jnp
 from jax import Array
 
@@ -31,12 +28,21 @@ from propmdao.aerodynamics.solutions.period_loads import (
     period_loads,
     tilted_onset,
 )
-from propmdao.aerodynamics.solutions.result import TiltedLoads, sections_agree, strip_loads
+from propmdao.aerodynamics.solutions.result import (
+    TiltedLoads,
+    sections_agree,
+    strip_loads,
+    unless_still,
+)
 from propmdao.aerodynamics.solutions.roots import at_root, decreasing_root
 from propmdao.aerodynamics.vortices.cores import core_radius, middles
 from propmdao.aerodynamics.wakes.helical import helical_wake
 from propmdao.aerodynamics.wakes.history import shedding_delay
-from propmdao.aerodynamics.wakes.momentum import momentum_induced_velocity
+from propmdao.aerodynamics.wakes.momentum import (
+    lowest_induced_velocity,
+    momentum_induced_velocity,
+    within_momentum_theory,
+)
 from propmdao.aerodynamics.wakes.skewed import sideways_drift
 from propmdao.records.loads import PeriodicLoads
 from propmdao.records.pytrees import Scalar, record
@@ -88,11 +94,7 @@ def flow_at(case: RotorCase) -> TiltedFlow:
     TiltedFlow
         The case with its lattice, all numbers as floats.
     """
-    case = dataclasses.replace(
-        case,
-        rotor=jax.tree.map(lambda x: jnp.asarray(x, float), case.rotor),
-        state=jax.tree.map(lambda x: jnp.asarray(x, float), case.state),
-    )
+    case = case.in_floats()
     return TiltedFlow(case, period_lattice(case.rotor))
 
 
@@ -193,13 +195,9 @@ def solve(case: RotorCase, thrust_guess: Scalar = 0.0) -> TiltedLoads:
             loads = evaluate(params, w)
             return residual(params, w, loads), loads
 
-        # As far as momentum theory has one root: in hover and at an angle the air may go either
-        # way through the disk.
-        axial, edgewise = state.axial_speed, state.edgewise_speed
-        either = (state.speed == 0.0) | (edgewise**2 > 0.125 * axial**2)
         w, loads = decreasing_root(
             trial,
-            jnp.where(either, -tip_speed, -0.5 * axial + 1.0e-6 * tip_speed),
+            lowest_induced_velocity(state, flow.case.rotor.radius),
             tip_speed,
             induced_velocity(flow, jnp.where(thrust_guess == 0.0, _guess(flow), thrust_guess)),
             _TOLERANCE,
@@ -208,7 +206,7 @@ def solve(case: RotorCase, thrust_guess: Scalar = 0.0) -> TiltedLoads:
 
     params = (flow, jnp.asarray(thrust_guess, float))
     w, loads, _ = at_root(search, evaluate, residual, params)
-    return _unless_still(turning, tilted_loads(flow, w, loads))
+    return unless_still(turning, tilted_loads(flow, w, loads))
 
 
 def _guess(flow: TiltedFlow) -> Array:
@@ -301,13 +299,7 @@ def tilted_loads(
     hub_force, hub_moment = (rotor.n_blades * of_blade.mean(axis=0) for of_blade in (force, moment))
     tip_speed = state.rotation_speed * rotor.radius
     agrees = jnp.abs(induced_velocity(flow, thrust) - w) < 1.0e-6 * tip_speed
-    axial = state.axial_speed
-    windmilling_limit = -0.5 * rotor.disk_area * state.air.density * axial * jnp.abs(axial)
-    within_momentum_theory = (
-        (state.speed == 0.0)
-        | (state.edgewise_speed**2 > 0.125 * axial**2)
-        | (thrust > windmilling_limit)
-    )
+    within = within_momentum_theory(thrust, state, rotor.radius)
     onset = tilted_onset(flow.lattice.lattice, state, w, flow.n_azimuths)
     strip_thrust, strip_torque = _mean_strip_loads(loads)
     return TiltedLoads(
@@ -325,7 +317,7 @@ def tilted_loads(
         strips=flow.lattice.lattice.strips,
         sections=loads.sections,
         attached=onset.attached,
-        converged=agrees & within_momentum_theory & sections_agree(loads.sections),
+        converged=agrees & within & sections_agree(loads.sections),
     )
 
 
@@ -347,15 +339,3 @@ def _mean_strip_loads(loads: PeriodBladeLoads) -> tuple[Array, Array]:
         thrust + force[rings, 2].reshape(nc, ns).sum(axis=0),
         torque + moment.reshape(nc, ns).sum(axis=0),
     )
-
-
-def _unless_still(turning: Array, loads: TiltedLoads) -> TiltedLoads:
-    """Zero loads where the propeller does not turn; they count as converged."""
-    still = jax.tree.map(jnp.zeros_like, loads)
-    still = dataclasses.replace(
-        still,
-        point_loads=PeriodicLoads(loads.point_loads.position, still.point_loads.force),
-        strips=loads.strips,
-        converged=jnp.asarray(True),
-    )
-    return jax.tree.map(lambda moving, still: jnp.where(turning, moving, still), loads, still)

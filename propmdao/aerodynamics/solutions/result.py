@@ -2,6 +2,10 @@
 
 from __future__ import annotations
 
+import dataclasses
+from typing import TypeVar
+
+import jax
 import jax.numpy as jnp
 import numpy as np
 from jax import Array
@@ -105,6 +109,9 @@ class TiltedLoads:
     converged: Array
 
 
+_Loads = TypeVar("_Loads", RotorLoads, TiltedLoads)
+
+
 def sections_agree(sections: SectionStates) -> Array:
     """Whether lattice and polars agree on the lift of every section, one that the polar can have.
 
@@ -176,6 +183,32 @@ def _place(solution: RotorLoads | TiltedLoads, shape: tuple[int, ...], flat: np.
     if shape[0] > 1:
         words += f", azimuth {360.0 * float(azimuth) / shape[0]:.0f} deg"
     return words
+
+
+def unless_still(turning: Array, loads: _Loads) -> _Loads:
+    """Zero loads where the propeller does not turn.
+
+    Parameters
+    ----------
+    turning : bool
+        Whether the propeller turns.
+    loads : RotorLoads or TiltedLoads
+        Loads of the propeller that turns.
+
+    Returns
+    -------
+    RotorLoads or TiltedLoads
+        Loads that were passed in or, at rest, zeros, which count as converged.
+    """
+    still = jax.tree.map(jnp.zeros_like, loads)
+    position = loads.point_loads.position
+    still = dataclasses.replace(
+        still,
+        point_loads=dataclasses.replace(still.point_loads, position=position),
+        strips=loads.strips,
+        converged=jnp.asarray(True),
+    )
+    return jax.tree.map(lambda moving, still: jnp.where(turning, moving, still), loads, still)
 
 
 def strip_loads(loads: LatticeLoads) -> tuple[Array, Array]:

@@ -52,6 +52,61 @@ def momentum_induced_velocity(thrust: Scalar, state: RotorState, radius: Scalar)
     return jnp.where(tilted, _tilted_root(square, state.axial_speed, edgewise, floor), axial)
 
 
+def lowest_induced_velocity(state: RotorState, radius: Scalar) -> Array:
+    """Induced velocity from which on momentum theory has one root for every thrust.
+
+    Parameters
+    ----------
+    state : RotorState
+        Rotation speed, flight speed and incidence of the rotor.
+    radius : float
+        Tip radius [m].
+
+    Returns
+    -------
+    float
+        Half the flight speed against it, or minus the tip speed where the air may go either way
+        through the disk: in hover and at an angle [m/s].
+    """
+    tip_speed = state.rotation_speed * radius
+    return jnp.where(
+        _goes_either_way(state), -tip_speed, -0.5 * state.axial_speed + 1.0e-6 * tip_speed
+    )
+
+
+def within_momentum_theory(thrust: Scalar, state: RotorState, radius: Scalar) -> Array:
+    """Whether momentum theory has an induced velocity for a thrust: down to the windmilling limit.
+
+    Parameters
+    ----------
+    thrust : float
+        Thrust of all blades [N].
+    state : RotorState
+        Flight speed, incidence and air of the rotor.
+    radius : float
+        Tip radius [m].
+
+    Returns
+    -------
+    bool
+        Whether it has.
+    """
+    axial = state.axial_speed
+    limit = -0.5 * jnp.pi * radius**2 * state.air.density * axial * jnp.abs(axial)
+    return _goes_either_way(state) | (jnp.asarray(thrust) > limit)
+
+
+def _goes_either_way(state: RotorState) -> Array:
+    """Whether no direction through the disk is barred to the air: in hover and at an angle."""
+    one_root = _rises_everywhere(state.axial_speed, state.edgewise_speed)
+    return (jnp.asarray(state.speed) == 0.0) | one_root
+
+
+def _rises_everywhere(axial: Scalar, edgewise: Scalar) -> Array:
+    """Whether w sqrt(u^2 + (v + w)^2) rises with w everywhere, see `_tilted_root`."""
+    return jnp.asarray(edgewise) ** 2 > 0.125 * jnp.asarray(axial) ** 2
+
+
 def _axial_root(square: Scalar, speed: Scalar, floor: Scalar) -> Array:
     """Root of T / (2 rho A) = w (V + w); `square` is the left side [m^2/s^2]."""
     speed = jnp.asarray(speed)
@@ -83,7 +138,7 @@ def _tilted_root(square: Scalar, speed: Scalar, edgewise: Scalar, floor: Scalar)
     # With |w| > 2 |v| the resultant is above |w| / 2, and so |w| below sqrt(2 |T| / (2 rho A)).
     t, v, u, least = fixed
     reach = 2.0 * (jnp.sqrt(jnp.abs(t)) + jnp.abs(v) + jnp.sqrt(least))
-    lowest = jnp.where((v <= 0.0) | (u**2 > 0.125 * v**2), -reach, -0.5 * v)
+    lowest = jnp.where((v <= 0.0) | _rises_everywhere(v, u), -reach, -0.5 * v)
     w = jax.lax.fori_loop(0, _HALVINGS, halved, (lowest, reach))[1]
     # One Newton step, in which alone the arguments count, gives the derivatives.
     encloses = _excess(lowest, *fixed) < 0.0
