@@ -178,7 +178,7 @@ def print_files(result: dict[str, Any]) -> None:
     Parameters
     ----------
     result : dict
-        With "sound", of `formats.wav.Recording`, and "figures", names of files; or
+        With "sound", of `formats.wav.Recording`, "tables" and "figures", names of files; or
         without.
     """
     if "sound" in result:
@@ -187,6 +187,8 @@ def print_files(result: dict[str, Any]) -> None:
             f"Sound: {sound['path']}, {sound['duration']:.3f} s, full scale"
             f" {sound['full_scale']:g} Pa, peak {sound['peak']:.4g} Pa"
         )
+    if "tables" in result:
+        print_line(" ".join(["Tables:", *result["tables"]]))
     if "figures" in result:
         print_line(" ".join(["Figures:", *result["figures"]]))
 

@@ -60,7 +60,7 @@ def analysis_figures(
     figures = _at_observer(analysis, sound, observer)
     levels = source_levels(sound, a_weighted)
     label = f"OASPL, {LEVEL_DBA if a_weighted else LEVEL}"
-    title = _operation(analysis)
+    title = operation(analysis)
     numbers = {"directivity": 0, "hemisphere": 0}
     for kind, members in observer_groups(analysis.listening):
         here = {source: level[members] for source, level in levels.items()}
@@ -127,7 +127,7 @@ def _at_observer(analysis: Analysis, sound: Sound, observer: int) -> dict[str, F
     # Straight below and above there is no azimuth.
     if abs(seen.elevation_deg) < 90.0 and seen.azimuth_deg != 0.0:
         place += f", azimuth {seen.azimuth_deg:.4g}°"
-    title = f"{_operation(analysis)}; observer {observer + 1}: {place}, {seen.radius:.4g} m"
+    title = f"{operation(analysis)}; observer {observer + 1}: {place}, {seen.radius:.4g} m"
     figures = {"pressure": pressure({title: blade_passage(sound.tones, observer)})}
     if sound.has_broadband:
         figures["spectrum"] = narrowband_spectrum({title: sound}, observer)
@@ -139,8 +139,19 @@ def _at_observer(analysis: Analysis, sound: Sound, observer: int) -> dict[str, F
     return figures
 
 
-def _operation(analysis: Analysis) -> str:
-    """Propeller, rotation speed and flight speed for titles."""
+def operation(analysis: Analysis) -> str:
+    """Propeller, rotation speed and flight speed for titles.
+
+    Parameters
+    ----------
+    analysis : Analysis
+        The analysis.
+
+    Returns
+    -------
+    str
+        In words.
+    """
     speed = float(analysis.point.speed)
     flight = f"{speed:.4g} m/s" if speed else "hover"
     return f"{analysis.propeller.name}, {analysis.rpm:.0f} rpm, {flight}"
