@@ -169,7 +169,7 @@ design_lift_coefficient : (n_stations,) arrays
     def setup(self) -> None:
         options = self.options
         propeller = options["propeller"]
-        model = model_of(options).completed(propeller.transition)
+        model = model_of(options).completed(propeller.transition, propeller.tip)
         is_heard = options["observers"] is not None
         if model.noise.broadband is not None and not is_heard:
             raise ValueError("broadband noise is heard at observers; there are none")

@@ -110,7 +110,7 @@ def analyze(
     """
     records = {"point": point, "change": change, "model": model, "listening": listening}
     request = Request.of(records, **asked)
-    model = request.model.completed(propeller.transition)
+    model = request.model.completed(propeller.transition, propeller.tip)
     request = dataclasses.replace(request, model=model)
     point, listening = request.point, request.listening
     changed = request.change.applied_to(propeller)

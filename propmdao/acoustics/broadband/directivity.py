@@ -68,7 +68,8 @@ def moving_radiation(
     Parameters
     ----------
     chordwise, spanwise, normal : array
-        As for `radiation` [m].
+        Components of the vector from the trailing edge, at its place at emission, to the observer:
+        along the chord (from leading to trailing edge), along the span, and normal to both [m].
     approach : array
         1 - M cos xi, with the Mach number M at which the edge moves through the undisturbed air and
         the angle xi between this motion and the way to the observer.
