@@ -119,7 +119,7 @@ def analyze(
     if listening.surroundings.absorption:
         require_known_air(point.air)
     _require_modelled(request)
-    paths = sound_paths(listening.observers, listening.surroundings)
+    paths = sound_paths(listening.observers, listening.surroundings, point.incidence_deg)
 
     elastic = model.loads.elastic
     material = None if elastic is None else material_of(changed, elastic)
@@ -192,13 +192,11 @@ def analyze(
 
 def _require_modelled(request: Request) -> None:
     """Refuse what is not modelled at an incidence, before the work."""
-    point, around = request.point, request.listening.surroundings
+    point = request.point
     if request.model.noise.broadband is not None:
         point.require_axial("broadband noise")
     if request.model.loads.elastic is not None:
         point.require_axial("an elastic blade")
-    if around != Surroundings():
-        point.require_axial("sound over the ground or through air that absorbs it")
 
 
 def _solve(solver: Solver, case: RotorCase, point: OperatingPoint) -> tuple[Any, RotorState]:
@@ -262,8 +260,7 @@ def _tones(
     if isinstance(loads, RotorLoads):
         return tones(panels, loads.point_loads, n_blades, state, points, n_harmonics)
     rotor = Rotor(equally_spaced(n_blades), float(state.rotation_speed), panels, loads.point_loads)
-    velocity = float(state.edgewise_speed), 0.0, float(state.axial_speed)
-    return rotor_tones(rotor, velocity, state.air, points, n_harmonics)
+    return rotor_tones(rotor, state.velocity, state.air, points, n_harmonics)
 
 
 @partial(compiled, static_argnames=("n_chordwise", "n_contour"))
