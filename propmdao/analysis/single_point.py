@@ -118,7 +118,8 @@ def analyze(
     require_outside_rotor(listening.observers, radius)
     if listening.surroundings.absorption:
         require_known_air(point.air)
-    _require_modelled(request)
+    if request.model.loads.elastic is not None:
+        point.require_axial("an elastic blade")
     paths = sound_paths(listening.observers, listening.surroundings, point.incidence_deg)
 
     elastic = model.loads.elastic
@@ -168,7 +169,6 @@ def analyze(
     sound = _tones(panels, loads, case.rotor.n_blades, state, points, fidelity.n_harmonics)
     noise = None
     if model.noise.broadband is not None:
-        assert isinstance(loads, RotorLoads)  # refused before
         states = loads.sections
         flow = strip_flow(
             loads.strips, states.relative_speed, states.lift_coefficient, blade, radii.strips
@@ -188,15 +188,6 @@ def analyze(
     )
     _require_numbers(analysis)
     return analysis
-
-
-def _require_modelled(request: Request) -> None:
-    """Refuse what is not modelled at an incidence, before the work."""
-    point = request.point
-    if request.model.noise.broadband is not None:
-        point.require_axial("broadband noise")
-    if request.model.loads.elastic is not None:
-        point.require_axial("an elastic blade")
 
 
 def _solve(solver: Solver, case: RotorCase, point: OperatingPoint) -> tuple[Any, RotorState]:
