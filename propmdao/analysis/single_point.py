@@ -118,8 +118,9 @@ def analyze(
     require_outside_rotor(listening.observers, radius)
     if listening.surroundings.absorption:
         require_known_air(point.air)
-    _require_modelled(request)
-    paths = sound_paths(listening.observers, listening.surroundings)
+    if request.model.loads.elastic is not None:
+        point.require_axial("an elastic blade")
+    paths = sound_paths(listening.observers, listening.surroundings, point.incidence_deg)
 
     elastic = model.loads.elastic
     material = None if elastic is None else material_of(changed, elastic)
@@ -168,7 +169,6 @@ def analyze(
     sound = _tones(panels, loads, case.rotor.n_blades, state, points, fidelity.n_harmonics)
     noise = None
     if model.noise.broadband is not None:
-        assert isinstance(loads, RotorLoads)  # refused before
         states = loads.sections
         flow = strip_flow(
             loads.strips, states.relative_speed, states.lift_coefficient, blade, radii.strips
@@ -188,17 +188,6 @@ def analyze(
     )
     _require_numbers(analysis)
     return analysis
-
-
-def _require_modelled(request: Request) -> None:
-    """Refuse what is not modelled at an incidence, before the work."""
-    point, around = request.point, request.listening.surroundings
-    if request.model.noise.broadband is not None:
-        point.require_axial("broadband noise")
-    if request.model.loads.elastic is not None:
-        point.require_axial("an elastic blade")
-    if around != Surroundings():
-        point.require_axial("sound over the ground or through air that absorbs it")
 
 
 def _solve(solver: Solver, case: RotorCase, point: OperatingPoint) -> tuple[Any, RotorState]:
@@ -262,8 +251,7 @@ def _tones(
     if isinstance(loads, RotorLoads):
         return tones(panels, loads.point_loads, n_blades, state, points, n_harmonics)
     rotor = Rotor(equally_spaced(n_blades), float(state.rotation_speed), panels, loads.point_loads)
-    velocity = float(state.edgewise_speed), 0.0, float(state.axial_speed)
-    return rotor_tones(rotor, velocity, state.air, points, n_harmonics)
+    return rotor_tones(rotor, state.velocity, state.air, points, n_harmonics)
 
 
 @partial(compiled, static_argnames=("n_chordwise", "n_contour"))

@@ -170,7 +170,7 @@ def add_analyze(commands: argparse._SubParsersAction[Any]) -> None:
 
 def _analyze(options: argparse.Namespace) -> None:
     _check(options)
-    listening = listening_of(options)
+    listening = listening_of(options, options.incidence_deg)
     _check_observers(options, len(listening.observers))
     asked = asked_of(options) | air_of(options) | {"listening": listening}
     points = [asked | {"rpm": rpm} for rpm in _rpm_values(options.rpm)]

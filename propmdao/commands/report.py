@@ -23,7 +23,6 @@ BAND = (
 )
 _TWIST_AT = 0.75  # r/R at which an elastic blade's twist is told
 TONES_ONLY = "Tones only: with broadband noise (--broadband) it is louder, above all in dBA."
-TONES_OF_A_TILTED_ROTOR = "Tones only: broadband noise is of axial flight."
 
 # Results of a band: label, formats of the number and of its changes.
 _BAND_ROWS = {
@@ -82,7 +81,7 @@ def print_analyses(analyses: Sequence[dict[str, Any]]) -> None:
         around = Surroundings(**first["listening"]["surroundings"])
         console.print(f"Levels: {around}{trip}.", highlight=False)
         if broadband is None:
-            console.print(TONES_OF_A_TILTED_ROTOR if incidence else TONES_ONLY)
+            console.print(TONES_ONLY)
     else:
         console.print("No observers: --arc RADIUS ELEVATION... adds their noise.\n")
     print_doubts(analyses)

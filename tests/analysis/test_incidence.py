@@ -1,11 +1,19 @@
 """An analysis at an incidence: what is asked, found, heard, and refused."""
 
+import dataclasses
+
+import jax.numpy as jnp
 import numpy as np
 import pytest
 
 import propmdao as pm
+from propmdao.acoustics.broadband.rotor import rotor_self_noise
+from propmdao.acoustics.levels.decibels import level_db
 from propmdao.analysis.flights.flyovers import fly_over
+from propmdao.analysis.self_noise import BANDS_HZ, strip_flow
 from propmdao.analysis.single_point import FastEdgewiseWarning, analyze
+from propmdao.geometry.blade import Blade
+from propmdao.geometry.lattice import strip_interpolation
 from propmdao.records.fidelity import Fidelity
 from propmdao.records.wake_law import WakeGrid
 
@@ -24,7 +32,7 @@ OBSERVERS = pm.arc(1.905, [-90.0, -60.0])
 
 def tilted(**asked):
     point = {"rpm": 4200.0, "speed": 8.0, "incidence_deg": 80.0}
-    return analyze(PROPELLER, viscous=False, fidelity=COARSE, **{**point, **asked})
+    return analyze(PROPELLER, viscous=False, **{"fidelity": COARSE, **point, **asked})
 
 
 @pytest.fixture(scope="module")
@@ -57,6 +65,62 @@ def test_unsteady_loading_is_heard_on_the_axis(edgewise):
     assert heard[1]["spl_bpf_db"] > silent[1]["spl_bpf_db"] + 10.0
 
 
+def test_over_ground_and_through_air_the_ways_add(edgewise):
+    """Level flight at 80 deg: the shaft leans forward by 10, and so does the mirror."""
+    around = pm.Surroundings(ground=3.0, level_flight=True)
+    up = np.array(around.up(80.0))
+    images = OBSERVERS - 2.0 * (OBSERVERS @ up + 3.0)[:, None] * up
+    free = tilted(observers=np.concatenate([OBSERVERS, images])).tones.total
+    over_ground = tilted(observers=OBSERVERS, surroundings=around)
+    np.testing.assert_allclose(over_ground.tones.total, free[:2] + free[2:], rtol=1e-9)
+    absorbed = tilted(observers=OBSERVERS, surroundings=pm.Surroundings(absorption=True))
+    lost = edgewise.spl_bpf_db() - absorbed.spl_bpf_db()
+    assert np.all((1e-4 < lost) & (lost < 0.1))
+
+
+def test_broadband_noise_is_that_of_the_flow_at_each_azimuth():
+    heard = tilted(observers=OBSERVERS, broadband=True)
+    loads, n = heard.loads, COARSE.n_azimuths
+    blade = Blade.from_propeller(PROPELLER)
+    radii = strip_interpolation(PROPELLER.r_over_R, COARSE.n_spanwise)
+
+    def flow(speed, lift):
+        return strip_flow(loads.strips, speed, lift, blade, radii)
+
+    # An azimuth of which all others are silent, one after the other.
+    speed, lift = loads.sections.relative_speed, loads.sections.lift_coefficient
+    one_by_one = [
+        rotor_self_noise(
+            flow(jnp.zeros_like(speed).at[k].set(speed[k]), lift),
+            2,
+            heard.state,
+            OBSERVERS,
+            BANDS_HZ,
+            n_azimuths=n,
+        ).total
+        for k in range(n)
+    ]
+    np.testing.assert_allclose(heard.broadband.total, sum(one_by_one), rtol=1e-9)
+    # It is no noise of the mean flow: where the air is fast it is far louder than elsewhere.
+    levels = level_db(jnp.stack(one_by_one).sum(axis=2))
+    assert np.all(levels.max(axis=0) - levels.min(axis=0) > 6.0)
+
+
+@pytest.mark.slow
+def test_broadband_noise_without_incidence_is_that_of_axial_flight():
+    longer = dataclasses.replace(COARSE.period_wake, turns=3.0)  # as in slow edgewise flight
+    axial, nearly = (
+        tilted(
+            incidence_deg=incidence,
+            observers=OBSERVERS[1:],
+            broadband=True,
+            fidelity=dataclasses.replace(COARSE, wake=longer, n_azimuths=24),
+        )
+        for incidence in (0.0, 1e-7)
+    )
+    np.testing.assert_allclose(nearly.broadband.total, axial.broadband.total, rtol=1e-6)
+
+
 def test_rotation_speed_for_a_thrust(edgewise):
     trimmed = tilted(rpm=None, thrust=float(edgewise.loads.thrust))
     assert trimmed.loads.converged
@@ -73,8 +137,6 @@ def test_fast_edgewise_flight_is_warned_of():
     [
         ({"incidence_deg": 151.0}, "incidence_deg must be within 0 ... 150 deg; it is 151"),
         ({"incidence_deg": float("nan")}, "incidence_deg must be within 0 ... 150 deg; it is nan"),
-        ({"broadband": True}, "incidence_deg must be 0 for broadband noise"),
-        ({"surroundings": pm.Surroundings(ground=10.0)}, "incidence_deg must be 0 for sound over"),
     ],
 )
 def test_what_is_not_modelled_is_refused(asked, complaint):

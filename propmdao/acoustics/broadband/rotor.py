@@ -1,5 +1,7 @@
 """Self-noise of a rotor: the sections of its blades over azimuth, heard by observers flying along.
 
+The shaft may stand at an angle to the flight, and the flow over the sections change over the turn.
+
 Every strip at every azimuth is an airfoil in steady flow; what the observer hears of it is shifted
 by Doppler and counts as long as it is heard (Brooks and Burley). Strips, azimuths and blades are
 not correlated: their mean squares add.
@@ -79,8 +81,7 @@ def rotor_self_noise(
     n_blades : int
         Number of equal blades (static).
     state : RotorState
-        Rotation speed Omega about +z, speed V of the rotor and the observers along +z, subsonic,
-        and the air.
+        Rotation speed Omega about +z, flight of the rotor and the observers, subsonic, and the air.
     observers : (n_observers, 3) array
         Positions from the rotor centre, moving with it [m].
     frequency_hz : (n_bands,) array
@@ -88,7 +89,7 @@ def rotor_self_noise(
     model : SelfNoiseModel
         Trip of the boundary layer and planform of the tip (static).
     n_azimuths : int
-        Number of equal steps in the turn (static).
+        Number of equal steps in the turn (static): those of the sections where their flow changes.
 
     Returns
     -------
@@ -188,15 +189,18 @@ def _emission(
     """
     azimuth = 2 * np.pi * np.arange(n_azimuths)[:, None] / n_azimuths
     cos, sin = np.cos(azimuth), np.sin(azimuth)
+
+    def turned_back(vector: Array) -> tuple[Array, Array, Array]:
+        return cos * vector[0] + sin * vector[1], cos * vector[1] - sin * vector[0], vector[2]
+
+    m = state.velocity / state.air.sound_speed
+    mx, my, mz = turned_back(m)
     x, y, z = position.T
-    sx = cos * observer[0] + sin * observer[1] - x
-    sy = cos * observer[1] - sin * observer[0] - y
-    sz = observer[2] - z
-    m = state.mach
-    d = emission_distance(sz * m, sx**2 + sy**2 + sz**2, m**2)
-    rz = sz + m * d
-    # Mach number of the rotation
-    towards = state.rotation_speed * (x * sy - y * sx) / (state.air.sound_speed * d)
-    axial = m * rz / d
-    approach = 1 - towards - axial
-    return (sx, sy, rz), approach, at_least(approach / (1 - axial), _LEAST_STRETCH)
+    sx, sy, sz = (q - p for q, p in zip(turned_back(observer), (x, y, z), strict=True))
+    d = emission_distance(mx * sx + my * sy + mz * sz, sx**2 + sy**2 + sz**2, m @ m)
+    rx, ry, rz = sx + mx * d, sy + my * d, sz + mz * d
+    # Mach numbers toward the observer, of the rotation and of the flight
+    turning = state.rotation_speed * (x * ry - y * rx) / (state.air.sound_speed * d)
+    flying = (mx * rx + my * ry + mz * rz) / d
+    approach = 1 - turning - flying
+    return (rx, ry, rz), approach, at_least(approach / (1 - flying), _LEAST_STRETCH)

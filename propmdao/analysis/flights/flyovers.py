@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
-from propmdao.acoustics.broadband.rotor import StripFlow, rotor_self_noise
+from propmdao.acoustics.broadband.rotor import StripFlow
 from propmdao.acoustics.kinematics.motion import Motion, poses
 from propmdao.acoustics.kinematics.tracks import fixed_observers, flyover_track, line_of_sight
 from propmdao.acoustics.levels.time_levels import third_octave_history
@@ -18,7 +18,7 @@ from propmdao.acoustics.sources.flyover import flyover_histories
 from propmdao.acoustics.sources.rotors import Rotor, equally_spaced
 from propmdao.analysis.flights.flyover_results import STEP, Flight, Flyover
 from propmdao.analysis.results import Analysis
-from propmdao.analysis.self_noise import BANDS_HZ, strip_flow
+from propmdao.analysis.self_noise import BANDS_HZ, self_noise, strip_flow
 from propmdao.geometry.blade import Blade
 from propmdao.geometry.lattice import strip_interpolation
 from propmdao.geometry.meshes import propeller_surface
@@ -190,14 +190,9 @@ def _broadband(
     if model is None:
         model = SelfNoiseModel(analysis.model.loads.transition.trip_in_noise)
     powers = [
-        rotor_self_noise(
-            flow,
-            n_blades,
-            analysis.state,
-            position[None],
-            BANDS_HZ / factor,
-            model=model,
-        ).total[0]
+        self_noise(flow, n_blades, analysis.state, position[None], model, BANDS_HZ / factor).total[
+            0
+        ]
         for position, factor in zip(beside, doppler, strict=True)
     ]
     return np.array(powers)
