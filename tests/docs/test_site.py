@@ -3,6 +3,7 @@
 ``make docs`` builds it and runs the code of its notebooks, the pages with a head for Jupyter.
 """
 
+import pkgutil
 import re
 import shlex
 from pathlib import Path
@@ -69,3 +70,32 @@ def test_commands_of_notebooks_fail_the_build(page: str) -> None:
     """A line with ! may fail unseen; a %%bash cell does not."""
     for cell in fences(PAGES[page], "{code-cell} python"):
         assert not re.search(r"^!", cell, re.M), cell
+
+
+NUMBER = re.compile(r"^\|.*\| `(propmdao\.[\w.]+)` \| ([-+.\de]+) \|$", re.M)
+
+
+def test_numbers_of_the_theory_are_those_of_the_code() -> None:
+    numbers = {
+        name: float(value)
+        for page, text in PAGES.items()
+        if page.startswith("theory/")
+        for name, value in NUMBER.findall(text)
+    }
+    assert len(numbers) > 25
+    for name, value in numbers.items():
+        assert pkgutil.resolve_name(_with_colon(name)) == pytest.approx(value, rel=1e-9), name
+
+
+def _with_colon(name: str) -> str:
+    """Dotted name with a colon before what is an attribute of a module: a class, a constant."""
+    parts = name.split(".")
+    first = next(k for k, part in enumerate(parts) if part[:1].isupper() or part[:1] == "_")
+    return f"{'.'.join(parts[:first])}:{'.'.join(parts[first:])}"
+
+
+def test_sources_that_the_theory_names_exist() -> None:
+    """Where an equation is coded, or checked."""
+    for page, text in PAGES.items():
+        for path in re.findall(r"`((?:propmdao|components|studies|tests|docs)/[\w./]+)`", text):
+            assert (DOCS.parent / path).exists(), f"{page}: {path}"
