@@ -8,7 +8,6 @@ import dataclasses
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from propmdao.commands.json_output import print_json
 from propmdao.commands.observer_options import add_absorption, air_of
 from propmdao.commands.options import (
     add_asked,
@@ -17,13 +16,14 @@ from propmdao.commands.options import (
     asked_of,
     number,
 )
-from propmdao.commands.output_files import (
+from propmdao.commands.output.json_output import print_json
+from propmdao.commands.output.output_files import (
     require_matplotlib,
     require_output,
     require_output_folder,
     save_figures,
 )
-from propmdao.commands.warning_lines import warning_lines
+from propmdao.commands.output.warning_lines import warning_lines
 from propmdao.runtime.output_files import replacing
 
 if TYPE_CHECKING:

@@ -19,7 +19,7 @@ from propmdao.commands.options import (
     number,
     number_or_range,
 )
-from propmdao.commands.warning_lines import warning_lines
+from propmdao.commands.output.warning_lines import warning_lines
 from propmdao.records.quantities import VARIABLES, Range
 from propmdao.runtime.terminal import print_line
 

@@ -16,7 +16,7 @@ from propmdao.analysis.results import Analysis
 from propmdao.analysis.single_point import analyze
 from propmdao.analysis.wopwop.exported_case import write_blade, write_case
 from propmdao.analysis.wopwop.foreign_case import run_case
-from propmdao.commands.wopwop_command import levels
+from propmdao.commands.exchange.wopwop_command import levels
 from propmdao.formats.propellers import load_propeller
 from propmdao.formats.wopwop.cases import read_cases
 from propmdao.formats.wopwop.geometry_file import read_geometry

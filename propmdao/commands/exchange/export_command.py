@@ -14,8 +14,8 @@ from propmdao.commands.options import (
     asked_of,
     number,
 )
-from propmdao.commands.output_files import require_output, require_output_folder
-from propmdao.commands.warning_lines import warning_lines
+from propmdao.commands.output.output_files import require_output, require_output_folder
+from propmdao.commands.output.warning_lines import warning_lines
 from propmdao.formats.endings import PROPELLER_WRITERS, STL_UNITS
 from propmdao.runtime.terminal import print_line
 
