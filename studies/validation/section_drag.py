@@ -286,7 +286,7 @@ def main() -> None:
         f"Re {name} thousand": (points.re > a) & (points.re <= b)
         for name, (a, b) in REYNOLDS_BANDS.items()
     }
-    from propmdao.figures import sections
+    from propmdao.figures.flow import sections
     from propmdao.figures.style import save
 
     figure = sections.drag_ratios(
