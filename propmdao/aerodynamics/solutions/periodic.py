@@ -138,12 +138,13 @@ def loads_at(flow: TiltedFlow, induced_velocity: Scalar) -> PeriodBladeLoads:
         viscosity, initial = state.air.kinematic_viscosity, BOUND_CORE * rotor.radius
         return core_radius(at, state.rotation_speed, viscosity, initial)
 
-    onset = tilted_onset(lattice.lattice, state, induced_velocity, n)
+    azimuths = jnp.asarray(azimuths_of(n))
+    onset = tilted_onset(lattice.lattice, state, induced_velocity, azimuths)
     step = onset.mean_speed * ages[1] / state.rotation_speed
     delay = shedding_delay(lattice.last_panel, step) / onset.mean_speed * state.rotation_speed
     wake = PeriodWake(
         nodes=helical_wake(edge, case.wake, rotor, state, induced_velocity),
-        drift=sideways_drift(ages, jnp.asarray(azimuths_of(n)), state),
+        drift=sideways_drift(ages, azimuths, state),
         ages=ages,
         delay=delay,
         trailing_core=core(middles(ages)),
@@ -285,7 +286,7 @@ def tilted_loads(
     """
     rotor, state = flow.case.rotor, flow.case.state
     w, thrust = induced_velocity_at_disk, mean_thrust(flow, loads)
-    psi = jnp.asarray(azimuths_of(flow.n_azimuths))
+    psi = jnp.asarray(azimuths_of(loads.circulation.shape[0]))
 
     def at_rest(vector: Array) -> Array:
         """Components in the axes that do not turn."""
@@ -299,7 +300,7 @@ def tilted_loads(
     tip_speed = state.rotation_speed * rotor.radius
     agrees = jnp.abs(induced_velocity(flow, thrust) - w) < 1.0e-6 * tip_speed
     within = within_momentum_theory(thrust, state, rotor.radius)
-    onset = tilted_onset(flow.lattice.lattice, state, w, flow.n_azimuths)
+    onset = tilted_onset(flow.lattice.lattice, state, w, psi)
     strip_thrust, strip_torque = strip_loads(
         loads.position, loads.force.mean(axis=0), *loads.circulation.shape[1:]
     )

@@ -117,6 +117,11 @@ class TiltedLoads:
     attached: Array
     converged: Array
 
+    @property
+    def unsettled(self) -> str | None:
+        """Why the loads are not those of every turn, in one line; here they are, and it is None."""
+        return None
+
 
 _Loads = TypeVar("_Loads", RotorLoads, TiltedLoads)
 
@@ -178,6 +183,8 @@ def failure(solution: RotorLoads | TiltedLoads) -> str | None:
             "beyond its polar: chord or twist changes too much from station to station for one"
             " solution"
         )
+    if isinstance(solution, TiltedLoads) and solution.unsettled is not None:
+        return solution.unsettled
     return (
         f"thrust {float(solution.thrust):.4g} N and induced velocity "
         f"{float(solution.induced_velocity):.4g} m/s do not agree with momentum theory: "
