@@ -24,6 +24,7 @@ from propmdao.records.models import Model
 from propmdao.records.plain import to_plain
 from propmdao.records.quantities import (
     BROADBAND_LEVELS,
+    HUB_LOADS,
     LEVELS,
     RESULTS,
     VARIABLES,
@@ -44,6 +45,7 @@ _N_WORKERS = Range(1, 256)
 
 
 _RESULTS = [name for name in ("rpm", *RESULTS) if name != "failure"]
+_RESULTS += [column for vector in HUB_LOADS.values() for column in vector.columns]
 _WARNINGS = "warnings"
 
 
@@ -314,6 +316,8 @@ def _analysed(
         for name in (*LEVELS, *BROADBAND_LEVELS)
         if name in observer
     }
+    for name, vector in HUB_LOADS.items():
+        results |= zip(vector.columns, results.pop(name), strict=True)
     said = dict.fromkeys(" ".join(str(warning.message).split()) for warning in caught)
     results[_WARNINGS] = "; ".join(said)
     unconverged = "" if results["converged"] else "the solution has not converged"

@@ -55,6 +55,7 @@ EXAMPLES = """\
 examples:
   propmdao analyze apcsf_11x4.7 --rpm 4200 --speed 8
   propmdao analyze apcsf_11x4.7 --rpm 6000 --speed 10 --incidence 70 --arc 1.905 -60 --json
+  propmdao analyze apcsf_11x4.7 --rpm 6000 --speed 10 --incidence 70 --figures results --vtk results
   propmdao analyze apcsf_11x4.7 --thrust 1.5 --speed 8 --arc 1.905 -45 --broadband
   propmdao analyze my_blade.toml --rpm 3000:5000:500 --arc 1.905 -45 0 45 --json
   propmdao analyze apcsf_11x4.7 --rpm 4200 --arc 1.905 -45 --band
@@ -153,7 +154,8 @@ def add_analyze(commands: argparse._SubParsersAction[Any]) -> None:
         type=Path,
         metavar="FOLDER",
         help="spectrum, third octaves and pressure at the observer of the loudest tones,"
-        " directivity of an arc, map of a hemisphere, as PNG",
+        " directivity of an arc, map of a hemisphere; at an incidence the loads over the disk, with"
+        " or without observers; as PNG",
     )
     group.add_argument(
         "--figure-at",
@@ -165,6 +167,14 @@ def add_analyze(commands: argparse._SubParsersAction[Any]) -> None:
         "--figure-dba",
         action="store_true",
         help="directivity and map of a hemisphere A-weighted",
+    )
+
+    group.add_argument(
+        "--vtk",
+        type=Path,
+        metavar="FOLDER",
+        help="blades with pressure difference and forces of their panels, and wake with its"
+        " circulation, as files of VTK for ParaView; at an incidence at every azimuth",
     )
 
 
@@ -237,12 +247,17 @@ def _check(options: argparse.Namespace) -> None:
             " along"
         )
     placed = [*options.arc, *options.point, *options.circle, *options.hemisphere, *options.grid]
-    for option, value in (("--wav", options.wav), ("--figures", options.figures)):
+    for option, value in (
+        ("--wav", options.wav),
+        ("--figures", options.figures),
+        ("--vtk", options.vtk),
+    ):
         if value is None:
             continue
         if _is_list(options.rpm):
             raise ValueError(f"{option} is of one operating point: give one --rpm")
-        if not placed:
+        drawn = option == "--vtk" or (option == "--figures" and options.incidence_deg)
+        if not placed and not drawn:
             raise ValueError(f"{option} needs observers, as with --arc 1.905 -45")
     if options.full_scale is not None and options.wav is None:
         raise ValueError("--full-scale is of a sound file: add --wav FILE.wav")
@@ -250,8 +265,9 @@ def _check(options: argparse.Namespace) -> None:
         raise ValueError("--figure-at and --figure-dba are of figures: add --figures FOLDER")
     if options.wav is not None:
         require_output("--wav", options.wav, ".wav")
-    if options.figures is not None:
-        require_output_folder("--figures", options.figures)
+    for option, folder in (("--figures", options.figures), ("--vtk", options.vtk)):
+        if folder is not None:
+            require_output_folder(option, folder)
 
 
 def _check_observers(options: argparse.Namespace, n_observers: int) -> None:
@@ -270,7 +286,7 @@ def _check_observers(options: argparse.Namespace, n_observers: int) -> None:
 
 
 def _write(options: argparse.Namespace, analysis: Analysis) -> dict[str, Any]:
-    """Write sound and figures; what was written."""
+    """Write sound, figures and files for ParaView; what was written."""
     written: dict[str, Any] = {}
     if options.wav is not None:
         from propmdao.analysis.sounds import write_sound
@@ -283,6 +299,10 @@ def _write(options: argparse.Namespace, analysis: Analysis) -> dict[str, Any]:
         observer = None if options.figure_at is None else options.figure_at - 1
         figures = analysis_figures(analysis, observer, options.figure_dba)
         written["figures"] = save_figures(options.figures, figures)
+    if options.vtk is not None:
+        from propmdao.figures.flow.scenes import write_scenes
+
+        written["vtk"] = write_scenes(options.vtk, analysis)
     return written
 
 

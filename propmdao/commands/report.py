@@ -172,13 +172,12 @@ def print_doubts(results: Sequence[dict[str, Any]]) -> None:
 
 
 def print_files(result: dict[str, Any]) -> None:
-    """Print which files of sound and figures were written.
+    """Print which files of sound, figures and surfaces were written.
 
     Parameters
     ----------
     result : dict
-        With "sound", of `formats.wav.Recording`, and "figures", names of files; or
-        without.
+        With "sound", of `formats.wav.Recording`, "figures" and "vtk", names of files; or without.
     """
     if "sound" in result:
         sound = result["sound"]
@@ -188,6 +187,8 @@ def print_files(result: dict[str, Any]) -> None:
         )
     if "figures" in result:
         print_line(" ".join(["Figures:", *result["figures"]]))
+    if "vtk" in result:
+        print_line(" ".join(["For ParaView:", *result["vtk"]]))
 
 
 def _print_bands(console: Console, analyses: Sequence[dict[str, Any]]) -> None:

@@ -108,6 +108,9 @@ class Quantity:
         Help of the option; by default the meaning with the unit.
     allowed : Range or None
         Values that are allowed; None for words, switches and results.
+    axes : tuple of str
+        Axes of a vector's components; empty for a number. In JSON and components a vector is a
+        list, in tables a column for each axis.
     """
 
     name: str
@@ -122,6 +125,7 @@ class Quantity:
     placeholder: str = ""
     help: str = ""
     allowed: Range | None = None
+    axes: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
         """Fill in the names that are the same."""
@@ -132,6 +136,11 @@ class Quantity:
         if not self.help:
             unit = f" [{self.unit}]" if self.unit else ""
             object.__setattr__(self, "help", self.meaning + unit)
+
+    @property
+    def columns(self) -> tuple[str, ...]:
+        """Columns in tables: one, or one for each axis of a vector."""
+        return tuple(f"{self.json}_{axis}" for axis in self.axes) or (self.json,)
 
 
 _ASKED = (
@@ -294,6 +303,18 @@ _RESULTS = (
     Quantity("failure", "", "why it has not, or null"),
 )  # fmt: skip
 
+# In the axes of docs/conventions.md, which do not turn with the blades.
+_HUB_LOADS = (
+    Quantity(
+        "hub_force", "N", "mean force of all blades on the hub; z is the shaft, the rotor flies"
+        " toward z and x", axes=("x", "y", "z"),
+    ),
+    Quantity(
+        "hub_moment", "N*m", "mean moment of all blades on the hub about the rotor's centre; -z is"
+        " the torque", axes=("x", "y", "z"),
+    ),
+)  # fmt: skip
+
 _LEVELS = (
     Quantity("spl_bpf_db", "dB", "level of the tone at the blade passage frequency"),
     Quantity("oaspl_db", "dB", "overall level of the tones"),
@@ -313,6 +334,8 @@ _BROADBAND_LEVELS = (
 ASKED = {quantity.name: quantity for quantity in _ASKED}
 #: What an analysis finds, by name.
 RESULTS = {quantity.name: quantity for quantity in _RESULTS}
+#: Force and moment of the rotor on what carries it, by name.
+HUB_LOADS = {quantity.name: quantity for quantity in _HUB_LOADS}
 #: Levels of the tones at an observer, by name.
 LEVELS = {quantity.name: quantity for quantity in _LEVELS}
 #: Levels at an observer that broadband noise adds, by name.

@@ -51,6 +51,14 @@ def test_hub_loads_and_those_of_the_azimuths_are_in_the_results(edgewise):
     np.testing.assert_allclose(2.0 * mean, result["hub_force"], rtol=1e-12)
 
 
+def test_the_hub_of_an_axial_rotor_feels_thrust_and_torque_alone():
+    result = tilted(incidence_deg=0.0).to_dict()
+    assert result["thrust"] > 0.0 and result["torque"] > 0.0
+    assert result["hub_force"] == [0.0, 0.0, result["thrust"]]
+    assert result["hub_moment"] == [0.0, 0.0, -result["torque"]]
+    assert "azimuths" not in result
+
+
 def test_only_the_part_of_the_flight_along_the_shaft_is_propulsion(edgewise):
     numbers = edgewise.coefficients
     along = numbers.J * np.cos(np.radians(80.0))

@@ -368,7 +368,7 @@ def test_help_explains_every_option(capsys: pytest.CaptureFixture[str]) -> None:
     options += " --elastic --youngs-modulus --shear-modulus --material-density"
     options += " --arc --point --circle --hemisphere --grid --ground --level --absorption"
     options += " --broadband --trip --band --wav --seconds --full-scale --figures --figure-at"
-    options += " --figure-dba --json"
+    options += " --figure-dba --vtk --json"
     for option in options.split():
         assert option in text
     assert "examples:" in text

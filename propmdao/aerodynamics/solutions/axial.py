@@ -22,10 +22,10 @@ from propmdao.aerodynamics.solutions.lattice_loads import (
     lattice_geometry,
     loads_with_wake,
 )
+from propmdao.aerodynamics.solutions.point_sums import strip_loads
 from propmdao.aerodynamics.solutions.result import (
     RotorLoads,
     sections_agree,
-    strip_loads,
     unless_still,
 )
 from propmdao.aerodynamics.solutions.roots import at_root, decreasing_root
@@ -261,7 +261,7 @@ def rotor_loads(
     tip_speed = state.rotation_speed * rotor.radius
     agrees = jnp.abs(induced_velocity(flow, thrust) - w) < 1.0e-6 * tip_speed
     within = within_momentum_theory(thrust, state, rotor.radius)
-    strip_thrust, strip_torque = strip_loads(loads)
+    strip_thrust, strip_torque = strip_loads(loads.position, loads.force, *loads.circulation.shape)
     return RotorLoads(
         thrust=thrust,
         torque=n_blades * loads.torque,

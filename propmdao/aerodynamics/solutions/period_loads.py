@@ -118,7 +118,7 @@ def azimuths_of(n_azimuths: int) -> np.ndarray:
 
 
 def tilted_onset(
-    lattice: LatticeGeometry, state: RotorState, induced_velocity: Scalar, n_azimuths: int
+    lattice: LatticeGeometry, state: RotorState, induced_velocity: Scalar, azimuths: Array
 ) -> PeriodOnset:
     """Air that meets blade 1 of a rotor in flight at an incidence.
 
@@ -130,8 +130,8 @@ def tilted_onset(
         Rotation speed, flight speed, incidence and air of the rotor.
     induced_velocity : float
         Induced velocity at the disk [m/s].
-    n_azimuths : int
-        Number of azimuths.
+    azimuths : (n_azimuths,) array
+        Azimuths of the blade [rad].
 
     Returns
     -------
@@ -139,7 +139,7 @@ def tilted_onset(
         Velocities of the air in the turning frame of the blade.
     """
     omega, edgewise, strips = state.rotation_speed, state.edgewise_speed, lattice.strips
-    psi = jnp.asarray(azimuths_of(n_azimuths))[:, None]
+    psi = azimuths[:, None]
     stream = -edgewise * jnp.cos(psi), edgewise * jnp.sin(psi)  # along x and y of the blade
 
     def air_at(x: Array, y: Array, axial: Scalar) -> Array:
@@ -242,7 +242,7 @@ def period_loads(
 
     lift = air.density * jax.vmap(strength)(circulation)[..., None]
     lift = lift * jnp.cross(velocity.swapaxes(1, 2), geometry.segment)
-    rate = rotation_speed * jnp.asarray(_derivative(n)) @ circulation
+    rate = rotation_speed * jnp.asarray(turn_derivative(n)) @ circulation
     unsteady = air.density * rate[..., None] * lattice.ring_area
 
     def drag(states: SectionStates) -> Array:
@@ -320,10 +320,20 @@ def _period_laws(
     )
 
 
-def _derivative(n_azimuths: int) -> np.ndarray:
+def turn_derivative(n_azimuths: int) -> np.ndarray:
     """Matrix that differentiates a Fourier series by its azimuths.
 
     The highest harmonic of an even number of them has no derivative there.
+
+    Parameters
+    ----------
+    n_azimuths : int
+        Number of azimuths of a turn.
+
+    Returns
+    -------
+    (n_azimuths, n_azimuths) array
+        The matrix [1/rad].
     """
     order = np.fft.fftfreq(n_azimuths, 1.0 / n_azimuths)
     order[np.abs(order) == n_azimuths / 2] = 0.0

@@ -16,7 +16,6 @@ from jax import Array
 
 from propmdao.aerodynamics.lattice.rings import BOUND_CORE
 from propmdao.aerodynamics.solutions.case import RotorCase
-from propmdao.aerodynamics.solutions.lattice_loads import LatticeLoads
 from propmdao.aerodynamics.solutions.period_lattice import (
     PeriodLattice,
     PeriodWake,
@@ -28,10 +27,10 @@ from propmdao.aerodynamics.solutions.period_loads import (
     period_loads,
     tilted_onset,
 )
+from propmdao.aerodynamics.solutions.point_sums import strip_loads
 from propmdao.aerodynamics.solutions.result import (
     TiltedLoads,
     sections_agree,
-    strip_loads,
     unless_still,
 )
 from propmdao.aerodynamics.solutions.roots import at_root, decreasing_root
@@ -139,12 +138,13 @@ def loads_at(flow: TiltedFlow, induced_velocity: Scalar) -> PeriodBladeLoads:
         viscosity, initial = state.air.kinematic_viscosity, BOUND_CORE * rotor.radius
         return core_radius(at, state.rotation_speed, viscosity, initial)
 
-    onset = tilted_onset(lattice.lattice, state, induced_velocity, n)
+    azimuths = jnp.asarray(azimuths_of(n))
+    onset = tilted_onset(lattice.lattice, state, induced_velocity, azimuths)
     step = onset.mean_speed * ages[1] / state.rotation_speed
     delay = shedding_delay(lattice.last_panel, step) / onset.mean_speed * state.rotation_speed
     wake = PeriodWake(
         nodes=helical_wake(edge, case.wake, rotor, state, induced_velocity),
-        drift=sideways_drift(ages, jnp.asarray(azimuths_of(n)), state),
+        drift=sideways_drift(ages, azimuths, state),
         ages=ages,
         delay=delay,
         trailing_core=core(middles(ages)),
@@ -286,7 +286,7 @@ def tilted_loads(
     """
     rotor, state = flow.case.rotor, flow.case.state
     w, thrust = induced_velocity_at_disk, mean_thrust(flow, loads)
-    psi = jnp.asarray(azimuths_of(flow.n_azimuths))
+    psi = jnp.asarray(azimuths_of(loads.circulation.shape[0]))
 
     def at_rest(vector: Array) -> Array:
         """Components in the axes that do not turn."""
@@ -300,8 +300,10 @@ def tilted_loads(
     tip_speed = state.rotation_speed * rotor.radius
     agrees = jnp.abs(induced_velocity(flow, thrust) - w) < 1.0e-6 * tip_speed
     within = within_momentum_theory(thrust, state, rotor.radius)
-    onset = tilted_onset(flow.lattice.lattice, state, w, flow.n_azimuths)
-    strip_thrust, strip_torque = _mean_strip_loads(loads)
+    onset = tilted_onset(flow.lattice.lattice, state, w, psi)
+    strip_thrust, strip_torque = strip_loads(
+        loads.position, loads.force.mean(axis=0), *loads.circulation.shape[1:]
+    )
     return TiltedLoads(
         thrust=thrust,
         torque=-hub_moment[2],
@@ -318,24 +320,4 @@ def tilted_loads(
         sections=loads.sections,
         attached=onset.attached,
         converged=agrees & within & sections_agree(loads.sections),
-    )
-
-
-def _mean_strip_loads(loads: PeriodBladeLoads) -> tuple[Array, Array]:
-    """Mean thrust and torque of each strip of a blade, (ns,) each."""
-    _, nc, ns = loads.circulation.shape
-    position, force = loads.position, loads.force.mean(axis=0)
-    rings, profile = slice(-ns - nc * ns, -ns), slice(-ns, None)
-    segments = slice(0, -ns - nc * ns)
-    steady = LatticeLoads(
-        loads.circulation.mean(axis=0),
-        jnp.concatenate([position[segments], position[profile]]),
-        jnp.concatenate([force[segments], force[profile]]),
-        loads.sections,
-    )
-    thrust, torque = strip_loads(steady)
-    moment = -jnp.cross(position[rings], force[rings])[:, 2]
-    return (
-        thrust + force[rings, 2].reshape(nc, ns).sum(axis=0),
-        torque + moment.reshape(nc, ns).sum(axis=0),
     )
