@@ -68,11 +68,7 @@ def print_analyses(analyses: Sequence[dict[str, Any]]) -> None:
     """
     console = plain_console()
     first = analyses[0]
-    incidence = first["point"]["incidence_deg"]
-    tilted = f" at an incidence of {incidence:g} deg" if incidence else ""
-    _print_propeller(
-        console, first, f"speed {first['speed']:.4g} m/s{tilted}, air {first['rho']:.4g} kg/m3"
-    )
+    _print_propeller(console, first, f"{_flight(first)}, air {first['rho']:.4g} kg/m3")
     console.print(_operating_points(analyses))
     if any(analysis["observers"] for analysis in analyses):
         console.print(_levels(analyses))
@@ -102,8 +98,8 @@ def print_flyover(result: dict[str, Any]) -> None:
     _print_propeller(
         console,
         result,
-        f"{result['rpm']:.1f} rpm, thrust {result['thrust']:.4g} N, speed"
-        f" {result['speed']:.4g} m/s, {flight['height']:g} m above the ground",
+        f"{result['rpm']:.1f} rpm, thrust {result['thrust']:.4g} N, {_flight(result)},"
+        f" {flight['height']:g} m above the ground",
     )
     print_doubts([result])
     table = _table()
@@ -125,6 +121,13 @@ def print_flyover(result: dict[str, Any]) -> None:
         highlight=False,
     )
     print_files(result)
+
+
+def _flight(result: dict[str, Any]) -> str:
+    """Words for speed and incidence."""
+    incidence = result["point"]["incidence_deg"]
+    tilted = f" at an incidence of {incidence:g} deg" if incidence else ""
+    return f"speed {result['speed']:.4g} m/s{tilted}"
 
 
 def _print_propeller(console: Console, result: dict[str, Any], condition: str) -> None:

@@ -8,7 +8,7 @@ import pytest
 
 import propmdao as pm
 from propmdao.acoustics.broadband.rotor import rotor_self_noise
-from propmdao.acoustics.levels.decibels import level_db
+from propmdao.acoustics.levels.decibels import level_db, mean_square
 from propmdao.analysis.flights.flyovers import fly_over
 from propmdao.analysis.self_noise import BANDS_HZ, strip_flow
 from propmdao.analysis.single_point import FastEdgewiseWarning, analyze
@@ -152,6 +152,41 @@ def test_what_is_not_modelled_is_refused(asked, complaint):
         tilted(observers=pm.arc(1.905, [-45.0]), **asked)
 
 
-def test_a_flyover_is_of_axial_flight(edgewise):
-    with pytest.raises(ValueError, match="incidence_deg must be 0 for a flyover"):
-        fly_over(edgewise, pm.Flight(height=50.0))
+@pytest.fixture(scope="module")
+def flown_over(edgewise):
+    return fly_over(edgewise, pm.Flight(height=10.0, duration=4.0, absorption=False))
+
+
+def test_a_flyover_is_what_is_heard_flying_along_at_every_moment(flown_over):
+    """Who flies along is for a moment where the microphone is: mean squares of half a second."""
+    lean = np.radians(10.0)
+    by_step = {name: power.sum(axis=1) for name, power in flown_over.mean_square.items()}
+    for k in (2, 4, 6):
+        moments = flown_over.time[k] + 0.5 * (np.arange(9) - 4) / 9
+        ahead, down = 8.0 * moments, np.full(9, 10.0)  # of the rotor, from the microphone
+        x, z = (
+            -np.cos(lean) * ahead + np.sin(lean) * down,
+            -np.sin(lean) * ahead - np.cos(lean) * down,
+        )
+        along = tilted(observers=np.stack([x, 0.0 * x, z], axis=-1), broadband=True)
+        heard = {
+            name: np.asarray(mean_square(p)).sum(axis=1).mean()
+            for name, p in along.tones.parts.items()
+        }
+        heard["broadband"] = np.asarray(along.broadband.total)[4].sum()  # in the middle of a step
+        for name, power in heard.items():
+            # Hard ground doubles the pressure. Straight below there is next to no thickness noise.
+            loudest = by_step[name].max()
+            assert by_step[name][k] == pytest.approx(4.0 * power, rel=0.02, abs=1e-3 * loudest)
+
+
+def test_distance_elevation_and_doppler_of_a_rotor_that_leans_forward(flown_over):
+    lean = np.radians(10.0)
+    for step in flown_over.to_dict()["history"]:
+        emitted = step["time"] - step["distance"] / 340.294
+        way = np.array([-8.0 * emitted, -10.0])  # ahead and up
+        assert step["distance"] == pytest.approx(np.linalg.norm(way), rel=1e-9)
+        along_shaft = way @ [np.sin(lean), np.cos(lean)] / step["distance"]
+        assert step["elevation_deg"] == pytest.approx(np.degrees(np.arcsin(along_shaft)), abs=1e-6)
+        doppler = 1 / (1 - 8.0 / 340.294 * way[0] / step["distance"])
+        assert step["doppler"] == pytest.approx(doppler, rel=1e-9)

@@ -58,9 +58,10 @@ def fly_over(analysis: Analysis, flight: Flight, *, sound: bool = False) -> Flyo
 
     Notes
     -----
-    Absorption uses the direct path's length for the reflected path as well.
+    At an incidence the shaft leans forward by 90 degrees less it; elevations in the result are from
+    the plane of the rotor that leans. Absorption uses the direct path's length for the reflected
+    path as well.
     """
-    analysis.point.require_axial("a flyover")
     state = analysis.state
     air, sound_speed = state.air, float(state.air.sound_speed)
     speed = float(state.speed)
@@ -86,7 +87,7 @@ def fly_over(analysis: Analysis, flight: Flight, *, sound: bool = False) -> Flyo
     places = [[0.0, flight.sideline, flight.microphone_height]]
     if flight.microphone_height > 0.0:
         places.append([0.0, flight.sideline, -flight.microphone_height])
-    track = flyover_track(flight.height, speed)
+    track = flyover_track(flight.height, speed, 90.0 - analysis.point.incidence_deg)
     clock: Floats = start + np.arange(n_steps * each) / rate
     tones = _tones(analysis, propeller, places, clock, track)
     held = BANDS_HZ[BANDS_HZ * 10**0.06 < 0.5 * rate]
