@@ -4,7 +4,8 @@ import dataclasses
 import re
 from pathlib import Path
 
-from propmdao.records.quantities import ASKED, BROADBAND_LEVELS, LEVELS, RESULTS, Quantity, Range
+from propmdao.records.quantities import ASKED, BROADBAND_LEVELS, LEVELS, RESULTS, Quantity
+from propmdao.records.units import Range
 
 PAGE = Path(__file__).with_name("conventions.md")
 HEADS = ("name", "unit", "default", "range", "meaning", "JSON, column", "component", "option")
