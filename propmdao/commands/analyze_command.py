@@ -28,7 +28,7 @@ from propmdao.commands.output.output_files import (
     require_output_folder,
     save_figures,
 )
-from propmdao.commands.output.warning_lines import warning_lines
+from propmdao.commands.output.warning_lines import progress_line, warning_lines
 from propmdao.formats.endings import POLAR_READERS, described
 from propmdao.records.quantities import ASKED
 
@@ -42,7 +42,8 @@ Thrust, torque and noise of a propeller in hover (speed 0), axial flight or at a
 Steady vortex lattice held to the polars of the blade's sections, with a wake carried by the flow it
 induces, then tones by Farassat's Formulation 1A: thickness and loading noise of the full blade
 surface, heard by observers that fly along. At an --incidence the loads change around the turn: the
-lattice is solved for all azimuths together, in a wake that is carried off sideways.
+lattice is solved for all azimuths together, in a wake that is carried off sideways. With --unsteady
+it is marched in time, in that wake or in a free one.
 With --broadband also the self-noise of the blades (Brooks, Pope and Marcolini). Ground may reflect
 the sound, and air absorb it.
 
@@ -56,6 +57,7 @@ examples:
   propmdao analyze apcsf_11x4.7 --rpm 4200 --speed 8
   propmdao analyze apcsf_11x4.7 --rpm 6000 --speed 10 --incidence 70 --arc 1.905 -60 --json
   propmdao analyze apcsf_11x4.7 --rpm 6000 --speed 10 --incidence 70 --figures results --vtk results
+  propmdao analyze apcsf_11x4.7 --rpm 6000 --speed 10 --incidence 70 --unsteady --wake free
   propmdao analyze apcsf_11x4.7 --thrust 1.5 --speed 8 --arc 1.905 -45 --broadband
   propmdao analyze my_blade.toml --rpm 3000:5000:500 --arc 1.905 -45 0 45 --json
   propmdao analyze apcsf_11x4.7 --rpm 4200 --arc 1.905 -45 --band
@@ -90,6 +92,12 @@ ASKED_OPTIONS = (
     "youngs_modulus",
     "shear_modulus",
     "material_density",
+    "unsteady",
+    "revolutions",
+    "average",
+    "timestep_deg",
+    "start",
+    "wake_motion",
 )
 
 
@@ -210,7 +218,8 @@ def _analyze(options: argparse.Namespace) -> None:
     with warning_lines("analyze"):
         drag = options.measured_drag
         polars = polars_for(propeller, own, transition, drag) if options.viscous else None
-        analyses = [analyze(propeller, polars=polars, **point) for point in points]
+        shown: dict[str, Any] = {"progress": progress_line()} if options.unsteady else {}
+        analyses = [analyze(propeller, polars=polars, **shown, **point) for point in points]
     if polars is not None:
         files = {airfoil: ", ".join(names) for airfoil, *names in options.polar}
         sources = polar_sources(propeller, own, transition, drag)
