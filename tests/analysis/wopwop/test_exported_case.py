@@ -30,12 +30,12 @@ from propmdao.records.panels import Panels
 from propmdao.records.wake_law import WakeGrid
 
 COARSE = Fidelity(
-    n_chordwise=4,
-    n_spanwise=8,
+    n_chordwise=2,
+    n_spanwise=5,
     n_contour=15,
     n_surface_span=12,
     n_harmonics=4,
-    n_azimuths=12,
+    n_azimuths=8,
     period_wake=WakeGrid(2.0, 2.0, 1.5, 40.0),
 )
 PROPELLER = load_propeller("apcsf_11x4.7_uiuc")
