@@ -10,23 +10,25 @@ from jax import Array
 _POINTS = 4  # of the interpolating cubic
 
 
-def lag_weights(lag: Array) -> tuple[Array, Array]:
+def lag_weights(lag: Array, n_steps: int) -> tuple[Array, Array]:
     """Time steps between which to interpolate, and their weights.
 
     The cubic goes through the two steps before and the two after the time wanted; next to the
-    present, where nothing comes after, through the four youngest.
+    present, where nothing comes after, through the four youngest, and at the other end likewise.
 
     Parameters
     ----------
     lag : array
         Time behind the present, in steps, not below 0.
+    n_steps : int
+        Steps that there are, the present among them.
 
     Returns
     -------
     step, weight : (..., 4) arrays
         Steps behind the present, whole numbers, and their weights, which add up to 1.
     """
-    first = jnp.maximum(jnp.floor(lag) - 1.0, 0.0)
+    first = jnp.clip(jnp.floor(lag) - 1.0, 0.0, n_steps - _POINTS)
     t = lag - first
     weights = []
     for i in range(_POINTS):
@@ -53,12 +55,29 @@ def remembered(lag: Array, history: Array) -> tuple[Array, Array]:
     now : (ns, n_rings) array
         Share of the present circulation of the strip.
     """
-    step, weight = lag_weights(lag)
     with_present = jnp.pad(history, ((1, 0), (0, 0), (0, 0)))
-    strips = jnp.arange(lag.shape[0])[:, None, None]
-    read = with_present[jnp.minimum(step, history.shape[0]), :, strips]
-    known = (weight[..., None] * read).sum(axis=2)
-    return jnp.moveaxis(known, -1, 0), jnp.where(step == 0, weight, 0.0).sum(axis=-1)
+    step, weight = lag_weights(lag, with_present.shape[0])
+    return read(lag, with_present), jnp.where(step == 0, weight, 0.0).sum(axis=-1)
+
+
+def read(lag: Array, strips: Array) -> Array:
+    """Circulation of strips at times between the steps.
+
+    Parameters
+    ----------
+    lag : (ns, n_rings) array
+        Times wanted behind the first step, in steps.
+    strips : (n_steps, m, ns) array
+        Circulation of the strips of m blades, the latest first [m^2/s].
+
+    Returns
+    -------
+    (m, ns, n_rings) array
+        Circulation at those times [m^2/s].
+    """
+    step, weight = lag_weights(lag, strips.shape[0])
+    number = jnp.arange(lag.shape[0])[:, None, None]
+    return jnp.moveaxis((weight[..., None] * strips[step, :, number]).sum(axis=2), -1, 0)
 
 
 def shed(ring: Array, present: Array) -> Array:

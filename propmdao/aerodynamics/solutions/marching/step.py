@@ -170,7 +170,7 @@ def step_loads(
         by_strips = normalwash_of_strips(collocation, normal, young, now[:, :n_young])
         return jnp.einsum("cp,pc->p", velocity, normal), by_strips
 
-    by_wake, by_strips = jax.lax.map(at_collocation, (sheets, _seen(known, n_blades)))
+    by_wake, by_strips = jax.lax.map(at_collocation, (sheets, seen_from_each(known, n_blades)))
     normalwash = jnp.einsum("kcp,pc->kp", onset.velocity[:, :, :n_panels], normal) + by_wake
     by_strips = _by_blade(by_strips)
     flow = PeriodFlow(
@@ -199,7 +199,7 @@ def step_loads(
     ring = known + now * strip[..., None]
     velocity += jax.lax.map(
         lambda place: sheet_velocities(on_segments, *place),
-        (sheets, _seen(ring, n_blades), _seen(strip, n_blades)),
+        (sheets, seen_from_each(ring, n_blades), seen_from_each(strip, n_blades)),
     )
 
     def strength(rings: Array) -> Array:
@@ -223,8 +223,21 @@ def step_loads(
     )
 
 
-def _seen(of_blades: Array, n_blades: int) -> Array:
-    """What each marched blade sees of the blades from itself on: (m, n_blades, ...)."""
+def seen_from_each(of_blades: Array, n_blades: int) -> Array:
+    """What each marched blade sees of the blades.
+
+    Parameters
+    ----------
+    of_blades : (m, ...) array
+        Anything of the marched blades.
+    n_blades : int
+        Number of blades.
+
+    Returns
+    -------
+    (m, n_blades, ...) array
+        The same of the blades, counted from the one that sees them.
+    """
     return at_the_blades(of_blades, n_blades).swapaxes(0, 1)
 
 

@@ -17,7 +17,7 @@ from propmdao.aerodynamics.wakes.helical import wake_transport
 from propmdao.formats.propellers import load_propeller
 from propmdao.geometry.lattice import strip_interpolation
 from propmdao.records.air import Air
-from propmdao.records.fidelity import Marching
+from propmdao.records.fidelity import FreeWake, Marching
 from propmdao.records.states import RotorState
 from propmdao.records.wake_law import WakeGrid, WakeLaw
 
@@ -83,13 +83,38 @@ def test_the_wake_is_kept_at_the_moments_that_were_asked_for(tilted):
     n_nodes = COARSE.ages.size
     assert tilted.snapshots.shape == (3, 2, NS + 1, n_nodes, 3)
     np.testing.assert_allclose(
-        tilted.snapshot_azimuth, 2.0 * np.pi / N * np.array([15, 31, 47]), rtol=1e-12
+        tilted.snapshot_azimuth, 2.0 * np.pi / N * np.array([16, 32, 48]), rtol=1e-12
     )
     np.testing.assert_allclose(tilted.snapshots[-1], tilted.wake)
-    # At the last step blade 1 stands a step short of azimuth 0, and its wake goes back from there.
+    # After whole turns blade 1 stands at azimuth 0, and its wake goes back from there.
     tip = np.asarray(tilted.wake[0, -1])
-    assert np.degrees(np.arctan2(tip[0, 1], tip[0, 0])) == pytest.approx(-30.0, abs=5.0)
+    assert np.degrees(np.arctan2(tip[0, 1], tip[0, 0])) == pytest.approx(0.0, abs=10.0)
     assert tip[-1, 2] < -0.5 * np.ptp(tip[:, 1])
+
+
+def test_a_free_wake_in_hover_contracts_and_descends(rotor):
+    case = rotor(0.0)
+    case = dataclasses.replace(case, state=dataclasses.replace(case.state, speed=0.0))
+    schedule = dataclasses.replace(SCHEDULE, wake="free", free_wake=FreeWake(1.0, 0.05, 5, 30.0))
+    marched = march(case, schedule)
+    tip = np.asarray(marched.wake[0, -1]) / 0.1397
+    at_half_a_turn = np.abs(np.degrees(COARSE.ages) - 180.0).argmin()
+    assert 0.7 < np.hypot(*tip[at_half_a_turn, :2]) < 0.97
+    assert tip[-1, 2] < -0.4
+    # It is another wake than the prescribed one, and not far from it.
+    prescribed = float(march(case, SCHEDULE).thrust)
+    assert 1e-3 < abs(float(marched.thrust) / prescribed - 1.0) < 0.1
+
+
+def test_a_march_beyond_memory_is_refused_before_it_starts(rotor):
+    with pytest.raises(ValueError, match=r"needs .* GiB, and 4 GiB are the limit"):
+        march(rotor(0.0), SCHEDULE, snapshots=10**6)
+
+
+def test_a_march_that_has_settled_may_stop(rotor):
+    schedule = dataclasses.replace(SCHEDULE, revolutions=9, average=2, stop_when_settled=True)
+    marched = march(rotor(0.0), schedule)
+    assert marched.settled and marched.thrust_history.size == 2 * N
 
 
 def test_a_rotor_at_rest_is_refused(rotor):
