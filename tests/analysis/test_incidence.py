@@ -4,8 +4,9 @@ import numpy as np
 import pytest
 
 import propmdao as pm
+from propmdao.aerodynamics.solutions.edgewise import FastEdgewiseWarning
 from propmdao.analysis.flights.flyovers import fly_over
-from propmdao.analysis.single_point import FastEdgewiseWarning, analyze
+from propmdao.analysis.single_point import analyze
 from propmdao.records.fidelity import Fidelity
 from propmdao.records.wake_law import WakeGrid
 
