@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import dataclasses
-import warnings
 from functools import partial
 from typing import Any, Unpack
 
@@ -28,6 +27,12 @@ from propmdao.aerodynamics.sections.polars.sources import polar_sources
 from propmdao.aerodynamics.sections.polars.table import warn_outside
 from propmdao.aerodynamics.solutions import axial, periodic
 from propmdao.aerodynamics.solutions.case import RotorCase
+from propmdao.aerodynamics.solutions.edgewise import (
+    edgewise_advance_ratio,
+    is_slow,
+    longer,
+    warn_if_fast,
+)
 from propmdao.aerodynamics.solutions.marching.marched_loads import Progress
 from propmdao.aerodynamics.solutions.result import RotorLoads, TiltedLoads
 from propmdao.aerodynamics.trim import Solver, rotation_bounds, trim
@@ -51,13 +56,6 @@ from propmdao.records.units import RAD_PER_S
 from propmdao.records.wake_law import WakeGrid
 from propmdao.runtime.compilation import compiled
 from propmdao.runtime.finite import require_finite
-
-_SLOW, _LONGER = 0.05, 1.5  # advance ratio below which the wake has so many times the turns
-_FAST = 0.3  # advance ratio beyond which results are doubtful
-
-
-class FastEdgewiseWarning(UserWarning):
-    """A rotor flies edgewise so fast that its retreating side stalls."""
 
 
 def analyze(
@@ -208,45 +206,26 @@ def _solve(solver: Solver, case: RotorCase, point: OperatingPoint) -> tuple[Any,
         return loads, point.at(rotation_speed)
     assert point.rotation_speed is not None
     state = point.at(point.rotation_speed)
-    # The fastest a blade gets: at an incidence, on the advancing side.
-    edgewise, axial_speed = float(state.edgewise_speed), float(state.axial_speed)
-    advancing = point.rotation_speed + edgewise / radius
-    require_subsonic_tip(radius, RotorState(advancing, abs(axial_speed), state.air))
+    require_subsonic_tip(radius, state)
     return solver.solve(case.turning(point.rotation_speed)), state
 
 
 def _tilted(case: RotorCase, point: OperatingPoint, model: Model) -> tuple[TiltedLoads, RotorState]:
     """Loads at an incidence; in slow flight, where the wake stays near, with a longer one."""
-    grid = model.fidelity.period_wake
-    longer = dataclasses.replace(grid, turns=_LONGER * grid.turns)
+    grid, radius = model.fidelity.period_wake, float(case.rotor.radius)
 
     def solved(grid: WakeGrid) -> tuple[TiltedLoads, RotorState, float]:
         wake = wake_transport(model.loads.wake, grid)
         loads, state = _solve(periodic, dataclasses.replace(case, wake=wake), point)
-        return loads, state, _edgewise_advance_ratio(state, float(case.rotor.radius))
+        return loads, state, edgewise_advance_ratio(state, radius)
 
     known = point.rotation_speed
-    slow = known is not None and (
-        _edgewise_advance_ratio(point.at(known), float(case.rotor.radius)) < _SLOW
-    )
-    loads, state, ratio = solved(longer if slow else grid)
-    if ratio < _SLOW and not slow:
-        loads, state, ratio = solved(longer)
-    if ratio > _FAST:
-        warnings.warn(
-            f"advance ratio V sin(incidence) / (Omega R) {ratio:.3g} is above {_FAST:g}: the"
-            " retreating side stalls and meets the air from behind, and dynamic stall is not"
-            " modelled",
-            FastEdgewiseWarning,
-            stacklevel=3,
-        )
+    slow = known is not None and is_slow(edgewise_advance_ratio(point.at(known), radius))
+    loads, state, ratio = solved(longer(grid) if slow else grid)
+    if is_slow(ratio) and not slow:
+        loads, state, ratio = solved(longer(grid))
+    warn_if_fast(ratio, stacklevel=4)
     return loads, state
-
-
-def _edgewise_advance_ratio(state: RotorState, radius: float) -> float:
-    """V sin(incidence) / (Omega R), 0 for a rotor that does not turn."""
-    tip_speed = float(state.rotation_speed) * radius
-    return float(state.edgewise_speed) / tip_speed if tip_speed else 0.0
 
 
 def _tones(

@@ -9,9 +9,10 @@ import pytest
 import propmdao as pm
 from propmdao.acoustics.broadband.rotor import rotor_self_noise
 from propmdao.acoustics.levels.decibels import level_db, mean_square
+from propmdao.aerodynamics.solutions.edgewise import FastEdgewiseWarning
 from propmdao.analysis.flights.flyovers import fly_over
 from propmdao.analysis.self_noise import BANDS_HZ, strip_flow
-from propmdao.analysis.single_point import FastEdgewiseWarning, analyze
+from propmdao.analysis.single_point import analyze
 from propmdao.geometry.blade import Blade
 from propmdao.geometry.lattice import strip_interpolation
 from propmdao.records.fidelity import Fidelity

@@ -73,8 +73,12 @@ class TiltedFlow:
     @property
     def n_azimuths(self) -> int:
         """Azimuths of the period: at least those asked for, and a multiple of the blades."""
-        n_blades = self.case.rotor.n_blades
-        return n_blades * -(-self.case.n_azimuths // n_blades)
+        return azimuths_for(self.case.n_azimuths, self.case.rotor.n_blades)
+
+
+def azimuths_for(at_least: int, n_blades: int) -> int:
+    """Azimuths of a period: at least so many, and a multiple of the blades."""
+    return n_blades * -(-at_least // n_blades)
 
 
 _Params = tuple[TiltedFlow, Array]  # with the thrust guessed
