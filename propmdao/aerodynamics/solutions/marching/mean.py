@@ -66,6 +66,7 @@ def mean_loads(
         load_positions(lattice),
         mean.force.at[:, on_rings].set(case.state.air.density * unsteady),
         dataclasses.replace(mean.sections, residual=residual),
+        mean.recambering,
     )
     flow = TiltedFlow(case, lattice.period)
     w = induced_velocity(flow, mean_thrust(flow, loads))

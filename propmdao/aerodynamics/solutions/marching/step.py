@@ -83,12 +83,15 @@ class StepLoads:
         Flow, lift and drag of the sections, (m, ns) each.
     attached : (m, ns) array
         Share of the lattice in the angle of attack.
+    recambering : (m, ns) array
+        Recambering of the sections, 0 in inviscid flow [rad].
     """
 
     circulation: Array
     force: Array
     sections: SectionStates
     attached: Array
+    recambering: Array
 
 
 def marched_lattice(period: PeriodLattice) -> MarchedLattice:
@@ -185,7 +188,7 @@ def step_loads(
         laws = jax.vmap(
             lambda speed: section_laws(strips, speed, onset.turning_share, air, polars)
         )(onset.relative_speed)
-        recambering = solve_period_recambering(flow, laws)
+        recambering = solve_period_recambering(flow, laws, recambering)
     by_lattice, by_motion = period_states(flow, recambering, laws)
 
     strip = flow.circulation + (flow.response @ recambering.ravel()).reshape(m, ns)
@@ -220,6 +223,7 @@ def step_loads(
         jnp.concatenate([lift, unsteady, profile], axis=1),
         by_lattice,
         onset.attached,
+        recambering,
     )
 
 
