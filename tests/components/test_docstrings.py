@@ -79,7 +79,9 @@ def names_of(system):
 
 
 SYSTEMS = sorted(
-    name for name in components.__all__ if issubclass(getattr(components, name), System)
+    name
+    for name in components.__all__
+    if isinstance(member := getattr(components, name), type) and issubclass(member, System)
 )
 
 
