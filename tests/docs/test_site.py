@@ -143,3 +143,17 @@ def _script(name: str):
     module = sys.modules[name] = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(module)
     return module
+
+
+def test_imports_of_notebooks_are_documented() -> None:
+    """What a tutorial or how-to takes from behind the front door has a place in the reference."""
+    known = set(re.findall(r"^\.\. auto\w+:: ([\w.]+)$", PAGES["reference/parts.md"], re.M))
+    needed = {
+        f"{module}.{name}"
+        for page in NOTEBOOKS
+        for cell in fences(PAGES[page], "{code-cell} python")
+        for module, names in re.findall(r"^from (propmdao\.[\w.]+) import (.*)$", cell, re.M)
+        for name in names.split(", ")
+        if module != "propmdao.components"
+    }
+    assert needed <= known, sorted(needed - known)
