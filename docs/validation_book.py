@@ -160,7 +160,8 @@ def _row(*cells: str) -> str:
 
 
 def _plain(text: str) -> str:
-    """An explanation without types, with four digits."""
+    """An explanation without types and the folder of the data, with four digits."""
+    text = text.replace(os.environ.get("PROPMDAO_REFERENCE_DATA", "\0"), "...")
     return _DIGITS.sub(lambda number: f"{float(number[0]):.4g}", _TYPES.sub(r"\1", text))
 
 
@@ -174,7 +175,8 @@ def main() -> None:
     """Run the tests and write the page."""
     if "--run" in sys.argv:
         recorder = Recorder()
-        arguments = [TESTS, "-q", "-p", "no:cacheprovider", "-o", "enable_assertion_pass_hook=true"]
+        arguments = [TESTS, "-vv", "-p", "no:cacheprovider"]  # -vv: numbers in full
+        arguments += ["-o", "enable_assertion_pass_hook=true"]
         pytest.main(arguments, plugins=[recorder])
         PAGE.write_text(page(recorder.cases), encoding="utf-8")
         return
