@@ -44,7 +44,7 @@ nb_execution_mode = "force"
 nb_execution_raise_on_error = True
 nb_execution_in_temp = True
 nb_execution_timeout = 600
-nb_merge_streams = True
+nb_output_stderr = "remove"  # progress, and warnings of other packages with their paths
 nb_render_markdown_format = "myst"
 
 autodoc_member_order = "bysource"

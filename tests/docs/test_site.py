@@ -3,9 +3,12 @@
 ``make docs`` builds it and runs the code of its notebooks, the pages with a head for Jupyter.
 """
 
+import importlib.util
+import json
 import pkgutil
 import re
 import shlex
+import sys
 from pathlib import Path
 
 import pytest
@@ -99,3 +102,58 @@ def test_sources_that_the_theory_names_exist() -> None:
     for page, text in PAGES.items():
         for path in re.findall(r"`((?:propmdao|components|studies|tests|docs)/[\w./]+)`", text):
             assert (DOCS.parent / path).exists(), f"{page}: {path}"
+
+
+def test_validation_book_says_what_its_tests_hold() -> None:
+    book = _script("validation_book")
+    file = "tests/validation/test_hover_noise.py"
+    checks = {
+        "test_a": book.Check("test_a_level[3600]", [("x | y < 2", "np.float64(1.23456789) < 2")]),
+        "test_b": book.Check("test_b", [("1 < 2", "1 < 2")], "failed", "AssertionError: 3 < 2"),
+        "test_c": book.Check("test_c", outcome="skipped", reason="no data"),
+    }
+    text = book.page({file: checks})
+    title = "APC-SF 11x4.7 in hover against the microphones of an anechoic chamber, nothing fitted"
+    assert f"[{title}](#" in text and "| 3 | 1 | 1 | 1 |" in text and f"## {title}\n" in text
+    assert r"| a level[3600] | `x \| y < 2` | `1.235 < 2` | met |" in text
+    assert "| b | AssertionError: 3 < 2 |  | **missed** |\n|  | `1 < 2` | `1 < 2` |  |" in text
+    assert "| c | no data |  | left out |" in text
+
+
+def test_the_json_schema_is_that_of_results() -> None:
+    schema = _script("json_schema")
+    assert schema.FILE.read_text("utf-8") == schema.text()
+    jsonschema = pytest.importorskip("jsonschema")
+    fidelity = propmdao.Fidelity(2, 4, n_contour=5, n_surface_span=4, n_harmonics=2)
+    analysis = propmdao.analyze(
+        propmdao.load_propeller("apcsf_11x4.7"), rpm=4200.0, broadband=True, fidelity=fidelity,
+        observers=propmdao.arc(1.905, [-45.0]),
+    )  # fmt: skip
+    result = json.loads(json.dumps(analysis.to_dict()))
+    jsonschema.validate(result, schema.schema())
+    del result["observers"][0]["oaspl_db"]
+    with pytest.raises(jsonschema.ValidationError):
+        jsonschema.validate(result, schema.schema())
+
+
+def _script(name: str):
+    """A script of docs/ as a module."""
+    spec = importlib.util.spec_from_file_location(name, DOCS / f"{name}.py")
+    assert spec and spec.loader
+    module = sys.modules[name] = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+def test_imports_of_notebooks_are_documented() -> None:
+    """What a tutorial or how-to takes from behind the front door has a place in the reference."""
+    known = set(re.findall(r"^\.\. auto\w+:: ([\w.]+)$", PAGES["reference/parts.md"], re.M))
+    needed = {
+        f"{module}.{name}"
+        for page in NOTEBOOKS
+        for cell in fences(PAGES[page], "{code-cell} python")
+        for module, names in re.findall(r"^from (propmdao\.[\w.]+) import (.*)$", cell, re.M)
+        for name in names.split(", ")
+        if module != "propmdao.components"
+    }
+    assert needed <= known, sorted(needed - known)
