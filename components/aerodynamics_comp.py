@@ -17,7 +17,7 @@ from propmdao.aerodynamics.solutions.edgewise import (
     warn_if_fast,
 )
 from propmdao.aerodynamics.solutions.known_root import solved_at
-from propmdao.aerodynamics.solutions.period_flow import azimuths_for
+from propmdao.aerodynamics.solutions.period.flow import azimuths_for
 from propmdao.aerodynamics.solutions.result import RotorLoads, TiltedLoads, failure
 from propmdao.aerodynamics.wakes.helical import wake_transport
 from propmdao.components.bases.array_function import Arrays, evaluate

@@ -9,7 +9,7 @@ import openmdao.api as om
 
 from propmdao.aerodynamics.sections.polars.family import SectionPolars
 from propmdao.aerodynamics.sections.polars.propeller_polars import polars_for
-from propmdao.aerodynamics.solutions.period_flow import azimuths_for
+from propmdao.aerodynamics.solutions.period.flow import azimuths_for
 from propmdao.components.acoustics_comp import AcousticsComp
 from propmdao.components.aerodynamics_comp import AerodynamicsComp, n_loads
 from propmdao.components.bases.nodes_comp import declare_num_nodes

@@ -1,7 +1,7 @@
 """Periodic lattice: loads of a rotor whose shaft stands at an angle to the flight.
 
 Around a turn the air meets the blade ever differently, and every turn is like the one before. So
-the circulation of all azimuths is one problem (`period_loads`), in a wake that the free stream and
+the circulation of all azimuths is one problem (`period.loads`), in a wake that the free stream and
 the induced velocity w carry (`wakes.skewed`); w follows from the mean thrust by Glauert's momentum
 theory of the tilted disk, as in axial flight. Without incidence this is the steady solution.
 
@@ -18,15 +18,15 @@ import jax.numpy as jnp
 from jax import Array
 
 from propmdao.aerodynamics.solutions.case import RotorCase
-from propmdao.aerodynamics.solutions.period_flow import (
+from propmdao.aerodynamics.solutions.period.flow import (
     TiltedFlow,
     flow_at,
     induced_velocity,
     loads_at,
     mean_thrust,
 )
-from propmdao.aerodynamics.solutions.period_guess import bracket, coarse_root, momentum_less
-from propmdao.aerodynamics.solutions.period_loads import (
+from propmdao.aerodynamics.solutions.period.guess import bracket, coarse_root, momentum_less
+from propmdao.aerodynamics.solutions.period.loads import (
     PeriodBladeLoads,
     azimuths_of,
     tilted_onset,

@@ -15,7 +15,7 @@ from propmdao.aerodynamics.solutions.marching.step import (
     StepLoads,
     load_positions,
 )
-from propmdao.aerodynamics.solutions.period_loads import PeriodBladeLoads, turn_derivative
+from propmdao.aerodynamics.solutions.period.loads import PeriodBladeLoads, turn_derivative
 from propmdao.aerodynamics.solutions.periodic import (
     TiltedFlow,
     induced_velocity,

@@ -1,6 +1,6 @@
 """One time step: circulation and forces of the blades in the wake that they have shed.
 
-The equations are those of a period (`solutions.period_loads`) at one moment: Neumann condition with
+The equations are those of a period (`solutions.period.loads`) at one moment: Neumann condition with
 the wake of the past, unsteady Kutta condition, for the youngest rings have what the strips have
 now, the lattice held to the polars, Kutta-Joukowski force with the local velocity, Bernoulli's
 unsteady term with a backward difference of second order.
@@ -24,12 +24,12 @@ from propmdao.aerodynamics.sections.period_recambering import (
 )
 from propmdao.aerodynamics.sections.recambering import SectionStates
 from propmdao.aerodynamics.solutions.lattice_loads import profile_drag
-from propmdao.aerodynamics.solutions.period_lattice import (
+from propmdao.aerodynamics.solutions.period.lattice import (
     PeriodLattice,
     at_the_blades,
     bound_inverse,
 )
-from propmdao.aerodynamics.solutions.period_loads import PeriodOnset
+from propmdao.aerodynamics.solutions.period.loads import PeriodOnset
 from propmdao.aerodynamics.wakes.lags import remembered
 from propmdao.aerodynamics.wakes.sheets import Sheets, normalwash_of_strips, sheet_velocities
 from propmdao.records.air import Air

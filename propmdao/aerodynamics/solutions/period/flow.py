@@ -7,12 +7,12 @@ from jax import Array
 
 from propmdao.aerodynamics.lattice.rings import BOUND_CORE
 from propmdao.aerodynamics.solutions.case import RotorCase
-from propmdao.aerodynamics.solutions.period_lattice import (
+from propmdao.aerodynamics.solutions.period.lattice import (
     PeriodLattice,
     PeriodWake,
     period_lattice,
 )
-from propmdao.aerodynamics.solutions.period_loads import (
+from propmdao.aerodynamics.solutions.period.loads import (
     PeriodBladeLoads,
     azimuths_of,
     period_loads,

@@ -31,7 +31,7 @@ from propmdao.aerodynamics.sections.period_recambering import (
 )
 from propmdao.aerodynamics.sections.recambering import SectionStates
 from propmdao.aerodynamics.solutions.lattice_loads import LatticeGeometry, profile_drag
-from propmdao.aerodynamics.solutions.period_lattice import (
+from propmdao.aerodynamics.solutions.period.lattice import (
     PeriodLattice,
     PeriodWake,
     at_the_blades,

@@ -15,14 +15,14 @@ import jax.numpy as jnp
 import numpy as np
 from jax import Array
 
-from propmdao.aerodynamics.solutions.period_flow import (
+from propmdao.aerodynamics.solutions.period.flow import (
     TiltedFlow,
     flow_at,
     induced_velocity,
     loads_at,
     mean_thrust,
 )
-from propmdao.aerodynamics.solutions.period_loads import PeriodBladeLoads
+from propmdao.aerodynamics.solutions.period.loads import PeriodBladeLoads
 from propmdao.aerodynamics.solutions.result import sections_agree
 from propmdao.aerodynamics.solutions.roots import Guess, decreasing_root, empty
 from propmdao.aerodynamics.wakes.momentum import lowest_induced_velocity
