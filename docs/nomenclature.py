@@ -4,7 +4,15 @@ import dataclasses
 import re
 from pathlib import Path
 
-from propmdao.records.quantities import ASKED, BROADBAND_LEVELS, LEVELS, RESULTS, Quantity, Range
+from propmdao.records.quantities import (
+    ASKED,
+    BROADBAND_LEVELS,
+    HUB_LOADS,
+    LEVELS,
+    RESULTS,
+    Quantity,
+)
+from propmdao.records.units import Range
 
 PAGE = Path(__file__).with_name("conventions.md")
 HEADS = ("name", "unit", "default", "range", "meaning", "JSON, column", "component", "option")
@@ -20,7 +28,7 @@ def table() -> str:
     """
     parts = {
         "**asked**": ASKED,
-        "**found**": RESULTS,
+        "**found**": RESULTS | HUB_LOADS,
         "**levels**": LEVELS | BROADBAND_LEVELS,
     }
     rows = [HEADS, ("---",) * len(HEADS)]
@@ -38,10 +46,17 @@ def _row(quantity: Quantity) -> tuple[str, ...]:
         default,
         _range(quantity.allowed),
         quantity.meaning,
-        f"`{quantity.json}`" if quantity.json != quantity.name else "",
+        _columns(quantity),
         f"`{quantity.variable}`" if quantity.variable != quantity.name else "",
         f"`{quantity.option}`" if quantity.option else "",
     )
+
+
+def _columns(quantity: Quantity) -> str:
+    """Key in JSON where it is not the name, and columns of tables where they are not the key."""
+    names = [quantity.json] if quantity.json != quantity.name else []
+    names += [name for name in quantity.columns if quantity.axes]
+    return ", ".join(f"`{name}`" for name in names)
 
 
 def _range(allowed: Range | None) -> str:

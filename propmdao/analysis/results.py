@@ -27,6 +27,7 @@ from propmdao.propeller.identity import checksum
 from propmdao.records.listening import Listening
 from propmdao.records.models import Model
 from propmdao.records.plain import to_plain
+from propmdao.records.quantities import HUB_LOADS
 from propmdao.records.states import OperatingPoint, RotorState
 from propmdao.records.units import RAD_PER_S
 from propmdao.runtime.compilation import compiled
@@ -98,7 +99,7 @@ class Analysis:
 
     @property
     def changed_propeller(self) -> Propeller:
-        """The blade that was analysed: the described one with its change, as far as it gives."""
+        """The blade that was analysed, the described one with its change, as far as it gives."""
         changed = self.change.applied_to(self.propeller)
         return changed if self.deflection is None else self.deflection.applied_to(changed)
 
@@ -116,10 +117,10 @@ class Analysis:
             source), change, point, model, listening, and where the polars come from; then rpm,
             speed, rho, J, thrust, torque, shaft_power, CT, CQ, CP, eta, figure_of_merit, converged,
             failure (None, or why it did not converge), deflection (None, or r_over_R, twist_deg,
-            sweep_over_R and rake_over_R of an elastic blade) and a list of observers with their
-            levels. At an incidence also hub_force [N] and hub_moment [N m], means over a turn in
-            the axes of the rotor that do not turn, and azimuths, with force and moment of blade 1
-            at each.
+            sweep_over_R and rake_over_R of an elastic blade), hub_force [N] and hub_moment [N m],
+            means over a turn in the axes of the rotor that do not turn, and a list of observers
+            with their levels. At an incidence also azimuths, with force and moment of blade 1 at
+            each.
         """
         levels = jax.tree.map(np.asarray, _levels(self.tones))
         places = directions(self.listening.observers).rounded()
@@ -144,6 +145,7 @@ class Analysis:
             "converged": bool(self.loads.converged),
             "failure": failure(self.loads),
             "deflection": to_plain(self.deflection),
+            **{name: np.asarray(getattr(self.loads, name)).tolist() for name in HUB_LOADS},
             **self._around_the_turn(),
             "observers": [
                 {
@@ -157,14 +159,12 @@ class Analysis:
         }
 
     def _around_the_turn(self) -> dict[str, Any]:
-        """Loads of the hub, and those of blade 1 at its azimuths, at an incidence."""
+        """Loads of blade 1 at its azimuths, at an incidence."""
         loads = self.loads
         if not isinstance(loads, TiltedLoads):
             return {}
         vectors = np.asarray(loads.blade_force), np.asarray(loads.blade_moment)
         return {
-            "hub_force": np.asarray(loads.hub_force).tolist(),
-            "hub_moment": np.asarray(loads.hub_moment).tolist(),
             "azimuths": [
                 {
                     "azimuth_deg": 360.0 * number / len(vectors[0]),

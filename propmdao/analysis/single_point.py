@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import dataclasses
-import warnings
 from functools import partial
 from typing import Any, Unpack
 
@@ -28,11 +27,19 @@ from propmdao.aerodynamics.sections.polars.sources import polar_sources
 from propmdao.aerodynamics.sections.polars.table import warn_outside
 from propmdao.aerodynamics.solutions import axial, periodic
 from propmdao.aerodynamics.solutions.case import RotorCase
+from propmdao.aerodynamics.solutions.edgewise import (
+    edgewise_advance_ratio,
+    is_slow,
+    longer,
+    warn_if_fast,
+)
+from propmdao.aerodynamics.solutions.marching.marched_loads import Progress
 from propmdao.aerodynamics.solutions.result import RotorLoads, TiltedLoads
 from propmdao.aerodynamics.trim import Solver, rotation_bounds, trim
 from propmdao.aerodynamics.wakes.helical import wake_transport
 from propmdao.analysis.elastic.deflections import Solved, deflected
 from propmdao.analysis.elastic.materials import material_of
+from propmdao.analysis.flights.marching import marched, require_marchable
 from propmdao.analysis.request import Asked, Request
 from propmdao.analysis.results import MECHANISMS, Analysis
 from propmdao.analysis.self_noise import BANDS_HZ, self_noise, strip_flow
@@ -50,13 +57,6 @@ from propmdao.records.wake_law import WakeGrid
 from propmdao.runtime.compilation import compiled
 from propmdao.runtime.finite import require_finite
 
-_SLOW, _LONGER = 0.05, 1.5  # advance ratio below which the wake has so many times the turns
-_FAST = 0.3  # advance ratio beyond which results are doubtful
-
-
-class FastEdgewiseWarning(UserWarning):
-    """A rotor flies edgewise so fast that its retreating side stalls."""
-
 
 def analyze(
     propeller: Propeller,
@@ -66,6 +66,7 @@ def analyze(
     model: Model | None = None,
     listening: Listening | None = None,
     polars: SectionPolars | None = None,
+    progress: Progress | None = None,
     **asked: Unpack[Asked],
 ) -> Analysis:
     """Analyse a propeller at a rotation speed, or at the one that gives a thrust.
@@ -88,11 +89,14 @@ def analyze(
         Observers that fly along with the rotor, ground, absorption; by default nobody listens.
     polars : SectionPolars, optional
         Polars by `polars_for`, for tables of one's own; by default the catalogue's.
+    progress : callable, optional
+        Called after every step of a march in time, with a `MarchProgress`.
     **asked
         Single values: rpm, thrust [N], speed [m/s], incidence_deg, density [kg/m^3] and the rest of
         the air; twist_offset_deg, chord_factor, diameter, n_blades; viscous, stall_delay, n_crit,
         trip_upper, trip_lower, measured_drag, elastic, youngs_modulus, shear_modulus [Pa],
-        material_density [kg/m^3], broadband, trip, fidelity; observers, (n, 3) positions [m] as
+        material_density [kg/m^3], unsteady, revolutions, average, timestep_deg, start, wake_motion,
+        broadband, trip, fidelity; observers, (n, 3) positions [m] as
         `propmdao.arc` makes them, surroundings.
 
     Returns
@@ -110,7 +114,7 @@ def analyze(
     """
     records = {"point": point, "change": change, "model": model, "listening": listening}
     request = Request.of(records, **asked)
-    model = request.model.completed(propeller.transition)
+    model = request.model.completed(propeller.transition, propeller.tip)
     request = dataclasses.replace(request, model=model)
     point, listening = request.point, request.listening
     changed = request.change.applied_to(propeller)
@@ -118,8 +122,11 @@ def analyze(
     require_outside_rotor(listening.observers, radius)
     if listening.surroundings.absorption:
         require_known_air(point.air)
-    _require_modelled(request)
-    paths = sound_paths(listening.observers, listening.surroundings)
+    if request.model.loads.unsteady is not None:
+        require_marchable(point, request.model)
+    if request.model.loads.elastic is not None:
+        point.require_axial("an elastic blade")
+    paths = sound_paths(listening.observers, listening.surroundings, point.incidence_deg)
 
     elastic = model.loads.elastic
     material = None if elastic is None else material_of(changed, elastic)
@@ -151,6 +158,8 @@ def analyze(
             wake_transport(model.loads.wake, fidelity.wake),
             fidelity.n_azimuths,
         )
+        if model.loads.unsteady is not None:
+            return Solved(blade, panels, case, *marched(case, point, model, progress))
         if point.incidence_deg == 0.0:
             return Solved(blade, panels, case, *_solve(axial, case, point))
         return Solved(blade, panels, case, *_tilted(case, point, model))
@@ -168,7 +177,6 @@ def analyze(
     sound = _tones(panels, loads, case.rotor.n_blades, state, points, fidelity.n_harmonics)
     noise = None
     if model.noise.broadband is not None:
-        assert isinstance(loads, RotorLoads)  # refused before
         states = loads.sections
         flow = strip_flow(
             loads.strips, states.relative_speed, states.lift_coefficient, blade, radii.strips
@@ -190,17 +198,6 @@ def analyze(
     return analysis
 
 
-def _require_modelled(request: Request) -> None:
-    """Refuse what is not modelled at an incidence, before the work."""
-    point, around = request.point, request.listening.surroundings
-    if request.model.noise.broadband is not None:
-        point.require_axial("broadband noise")
-    if request.model.loads.elastic is not None:
-        point.require_axial("an elastic blade")
-    if around != Surroundings():
-        point.require_axial("sound over the ground or through air that absorbs it")
-
-
 def _solve(solver: Solver, case: RotorCase, point: OperatingPoint) -> tuple[Any, RotorState]:
     """Loads at the operating point, and the state of the rotor there."""
     radius, speed = float(case.rotor.radius), float(point.speed)
@@ -209,45 +206,26 @@ def _solve(solver: Solver, case: RotorCase, point: OperatingPoint) -> tuple[Any,
         return loads, point.at(rotation_speed)
     assert point.rotation_speed is not None
     state = point.at(point.rotation_speed)
-    # The fastest a blade gets: at an incidence, on the advancing side.
-    edgewise, axial_speed = float(state.edgewise_speed), float(state.axial_speed)
-    advancing = point.rotation_speed + edgewise / radius
-    require_subsonic_tip(radius, RotorState(advancing, abs(axial_speed), state.air))
+    require_subsonic_tip(radius, state)
     return solver.solve(case.turning(point.rotation_speed)), state
 
 
 def _tilted(case: RotorCase, point: OperatingPoint, model: Model) -> tuple[TiltedLoads, RotorState]:
     """Loads at an incidence; in slow flight, where the wake stays near, with a longer one."""
-    grid = model.fidelity.period_wake
-    longer = dataclasses.replace(grid, turns=_LONGER * grid.turns)
+    grid, radius = model.fidelity.period_wake, float(case.rotor.radius)
 
     def solved(grid: WakeGrid) -> tuple[TiltedLoads, RotorState, float]:
         wake = wake_transport(model.loads.wake, grid)
         loads, state = _solve(periodic, dataclasses.replace(case, wake=wake), point)
-        return loads, state, _edgewise_advance_ratio(state, float(case.rotor.radius))
+        return loads, state, edgewise_advance_ratio(state, radius)
 
     known = point.rotation_speed
-    slow = known is not None and (
-        _edgewise_advance_ratio(point.at(known), float(case.rotor.radius)) < _SLOW
-    )
-    loads, state, ratio = solved(longer if slow else grid)
-    if ratio < _SLOW and not slow:
-        loads, state, ratio = solved(longer)
-    if ratio > _FAST:
-        warnings.warn(
-            f"advance ratio V sin(incidence) / (Omega R) {ratio:.3g} is above {_FAST:g}: the"
-            " retreating side stalls and meets the air from behind, and dynamic stall is not"
-            " modelled",
-            FastEdgewiseWarning,
-            stacklevel=3,
-        )
+    slow = known is not None and is_slow(edgewise_advance_ratio(point.at(known), radius))
+    loads, state, ratio = solved(longer(grid) if slow else grid)
+    if is_slow(ratio) and not slow:
+        loads, state, ratio = solved(longer(grid))
+    warn_if_fast(ratio, stacklevel=4)
     return loads, state
-
-
-def _edgewise_advance_ratio(state: RotorState, radius: float) -> float:
-    """V sin(incidence) / (Omega R), 0 for a rotor that does not turn."""
-    tip_speed = float(state.rotation_speed) * radius
-    return float(state.edgewise_speed) / tip_speed if tip_speed else 0.0
 
 
 def _tones(
@@ -262,8 +240,7 @@ def _tones(
     if isinstance(loads, RotorLoads):
         return tones(panels, loads.point_loads, n_blades, state, points, n_harmonics)
     rotor = Rotor(equally_spaced(n_blades), float(state.rotation_speed), panels, loads.point_loads)
-    velocity = float(state.edgewise_speed), 0.0, float(state.axial_speed)
-    return rotor_tones(rotor, velocity, state.air, points, n_harmonics)
+    return rotor_tones(rotor, state.velocity, state.air, points, n_harmonics)
 
 
 @partial(compiled, static_argnames=("n_chordwise", "n_contour"))

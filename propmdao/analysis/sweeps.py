@@ -24,12 +24,13 @@ from propmdao.records.models import Model
 from propmdao.records.plain import to_plain
 from propmdao.records.quantities import (
     BROADBAND_LEVELS,
+    HUB_LOADS,
     LEVELS,
     RESULTS,
     VARIABLES,
-    Range,
     require_asked,
 )
+from propmdao.records.units import Range
 from propmdao.runtime.input_files import read_text
 from propmdao.runtime.locks import locked
 from propmdao.runtime.output_files import make_folder, require_writable
@@ -44,6 +45,7 @@ _N_WORKERS = Range(1, 256)
 
 
 _RESULTS = [name for name in ("rpm", *RESULTS) if name != "failure"]
+_RESULTS += [column for vector in HUB_LOADS.values() for column in vector.columns]
 _WARNINGS = "warnings"
 
 
@@ -199,6 +201,8 @@ def sweep(
     request = Request.of(rpm=0.0, **asked)
     if request.model.loads.elastic is not None:
         raise ValueError("points of a sweep have rigid blades: analyze elastic ones one by one")
+    if request.model.loads.unsteady is not None:
+        raise ValueError("points of a sweep are not marched in time: analyze them one by one")
     same = _same_columns(request)
     complete = [_complete(propeller, point) | same for point in points]
     drives = {"rpm" if "rpm" in point else "thrust_required" for point in complete}
@@ -314,6 +318,8 @@ def _analysed(
         for name in (*LEVELS, *BROADBAND_LEVELS)
         if name in observer
     }
+    for name, vector in HUB_LOADS.items():
+        results |= zip(vector.columns, results.pop(name), strict=True)
     said = dict.fromkeys(" ".join(str(warning.message).split()) for warning in caught)
     results[_WARNINGS] = "; ".join(said)
     unconverged = "" if results["converged"] else "the solution has not converged"

@@ -28,7 +28,7 @@ from propmdao.commands.output.output_files import (
     require_output_folder,
     save_figures,
 )
-from propmdao.commands.output.warning_lines import warning_lines
+from propmdao.commands.output.warning_lines import progress_line, warning_lines
 from propmdao.formats.endings import POLAR_READERS, described
 from propmdao.records.quantities import ASKED
 
@@ -43,7 +43,8 @@ Thrust, torque and noise of a propeller in hover (speed 0), axial flight or at a
 Steady vortex lattice held to the polars of the blade's sections, with a wake carried by the flow it
 induces, then tones by Farassat's Formulation 1A: thickness and loading noise of the full blade
 surface, heard by observers that fly along. At an --incidence the loads change around the turn: the
-lattice is solved for all azimuths together, in a wake that is carried off sideways.
+lattice is solved for all azimuths together, in a wake that is carried off sideways. With --unsteady
+it is marched in time, in that wake or in a free one.
 With --broadband also the self-noise of the blades (Brooks, Pope and Marcolini). Ground may reflect
 the sound, and air absorb it.
 
@@ -56,6 +57,8 @@ EXAMPLES = """\
 examples:
   propmdao analyze apcsf_11x4.7 --rpm 4200 --speed 8
   propmdao analyze apcsf_11x4.7 --rpm 6000 --speed 10 --incidence 70 --arc 1.905 -60 --json
+  propmdao analyze apcsf_11x4.7 --rpm 6000 --speed 10 --incidence 70 --figures results --vtk results
+  propmdao analyze apcsf_11x4.7 --rpm 6000 --speed 10 --incidence 70 --unsteady --wake free
   propmdao analyze apcsf_11x4.7 --thrust 1.5 --speed 8 --arc 1.905 -45 --broadband
   propmdao analyze my_blade.toml --rpm 3000:5000:500 --arc 1.905 -45 0 45 --json
   propmdao analyze apcsf_11x4.7 --rpm 4200 --arc 1.905 -45 --band
@@ -90,6 +93,12 @@ ASKED_OPTIONS = (
     "youngs_modulus",
     "shear_modulus",
     "material_density",
+    "unsteady",
+    "revolutions",
+    "average",
+    "timestep_deg",
+    "start",
+    "wake_motion",
 )
 
 
@@ -167,8 +176,8 @@ def add_analyze(commands: argparse._SubParsersAction[Any]) -> None:
         type=Path,
         metavar="FOLDER",
         help="blade, loads over span and polars; where there are observers spectrum, third octaves"
-        " and pressure at that of the loudest tones, directivity of an arc, map of a hemisphere;"
-        " as PNG",
+        " and pressure at that of the loudest tones, directivity of an arc, map of a hemisphere; at"
+        " an incidence the loads over the disk; as PNG",
     )
     group.add_argument(
         "--figure-at",
@@ -182,10 +191,18 @@ def add_analyze(commands: argparse._SubParsersAction[Any]) -> None:
         help="directivity and map of a hemisphere A-weighted",
     )
 
+    group.add_argument(
+        "--vtk",
+        type=Path,
+        metavar="FOLDER",
+        help="blades with pressure difference and forces of their panels, and wake with its"
+        " circulation, as files of VTK for ParaView; at an incidence at every azimuth",
+    )
+
 
 def _analyze(options: argparse.Namespace) -> None:
     _check(options)
-    listening = listening_of(options)
+    listening = listening_of(options, options.incidence_deg)
     _check_observers(options, len(listening.observers))
     asked = asked_of(options) | air_of(options) | {"listening": listening}
     points = [asked | {"rpm": rpm} for rpm in _rpm_values(options.rpm)]
@@ -215,7 +232,8 @@ def _analyze(options: argparse.Namespace) -> None:
     with warning_lines("analyze"):
         drag = options.measured_drag
         polars = polars_for(propeller, own, transition, drag) if options.viscous else None
-        analyses = [analyze(propeller, polars=polars, **point) for point in points]
+        shown: dict[str, Any] = {"progress": progress_line()} if options.unsteady else {}
+        analyses = [analyze(propeller, polars=polars, **shown, **point) for point in points]
     if polars is not None:
         files = {airfoil: ", ".join(names) for airfoil, *names in options.polar}
         sources = polar_sources(propeller, own, transition, drag)
@@ -253,7 +271,11 @@ def _check(options: argparse.Namespace) -> None:
             " along"
         )
     placed = [*options.arc, *options.point, *options.circle, *options.hemisphere, *options.grid]
-    for option, value in (("--wav", options.wav), ("--figures", options.figures)):
+    for option, value in (
+        ("--wav", options.wav),
+        ("--figures", options.figures),
+        ("--vtk", options.vtk),
+    ):
         if value is None:
             continue
         if _is_list(options.rpm):
@@ -272,8 +294,9 @@ def _check(options: argparse.Namespace) -> None:
     ):
         if path is not None:
             require_output(option, path, ending)
-    if options.figures is not None:
-        require_output_folder("--figures", options.figures)
+    for option, folder in (("--figures", options.figures), ("--vtk", options.vtk)):
+        if folder is not None:
+            require_output_folder(option, folder)
 
 
 def _check_observers(options: argparse.Namespace, n_observers: int) -> None:
@@ -306,7 +329,7 @@ def _write_tables(options: argparse.Namespace, results: list[dict[str, Any]]) ->
 def _write(
     options: argparse.Namespace, analysis: Analysis, polars: SectionPolars | None
 ) -> dict[str, Any]:
-    """Write sound and figures; what was written."""
+    """Write sound, figures and files for ParaView; what was written."""
     written: dict[str, Any] = {}
     if options.wav is not None:
         from propmdao.analysis.sounds import write_sound
@@ -318,10 +341,14 @@ def _write(
         from propmdao.figures.rotor.of_rotor import rotor_figures
 
         figures = rotor_figures(analysis, polars)
-        if len(analysis.listening.observers):
+        if len(analysis.listening.observers) or options.incidence_deg:
             observer = None if options.figure_at is None else options.figure_at - 1
             figures |= analysis_figures(analysis, observer, options.figure_dba)
         written["figures"] = save_figures(options.figures, figures)
+    if options.vtk is not None:
+        from propmdao.figures.flow.scenes import write_scenes
+
+        written["vtk"] = write_scenes(options.vtk, analysis)
     return written
 
 

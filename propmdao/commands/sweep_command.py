@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import argparse
 import csv
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -27,7 +27,8 @@ from propmdao.commands.output.output_files import (
     save_figures,
 )
 from propmdao.commands.output.warning_lines import warning_lines
-from propmdao.records.quantities import VARIABLES, Range
+from propmdao.records.quantities import VARIABLES
+from propmdao.records.units import Range
 from propmdao.runtime.terminal import print_line
 
 if TYPE_CHECKING:
@@ -127,14 +128,14 @@ def add_sweep(commands: argparse._SubParsersAction[Any]) -> None:
 
 
 def _sweep(options: argparse.Namespace) -> None:
-    listening = listening_of(options)
     asked = {name: getattr(options, name) for name in ASKED_OF_ALL} | air_of(options)
+    points = _points(options)
+    listening = listening_of(options, _incidence(options, points))
     # Slow to import, so only once the arguments are known to be good.
     from propmdao.analysis.sweeps import sweep
     from propmdao.formats.propellers import load_propeller
     from propmdao.runtime.worker_processes import WorkerLostError
 
-    points = _points(options)
     columns: tuple[str, ...] = ()
     if options.figures is not None:
         require_output_folder("--figures", options.figures)
@@ -187,6 +188,17 @@ def _draw(
             if tuple(float(row[column]) for column in columns) in asked:
                 rows.append({name: float(row[name]) for name in (*columns, *SHOWN)})
     return save_figures(options.figures, {"sweep": sweep_maps(rows, columns, propeller.name)})
+
+
+def _incidence(options: argparse.Namespace, points: Sequence[Mapping[str, float]]) -> float:
+    """Incidence of the points, by which --level turns observers that are placed by the ground."""
+    every = {point.get("incidence_deg", 0.0) for point in points}
+    if options.level and (options.grid or options.hemisphere) and len(every) > 1:
+        raise ValueError(
+            "--grid and --hemisphere are placed by the ground: with --level all points need the"
+            f" same incidence; they have {len(every)}"
+        )
+    return every.pop()
 
 
 def _points(options: argparse.Namespace) -> list[dict[str, float]]:

@@ -9,9 +9,11 @@ import numpy as np
 
 from propmdao.acoustics.kinematics.observers import directions, on_map
 from propmdao.acoustics.levels.decibels import level_db, oaspl_db
+from propmdao.aerodynamics.solutions.result import TiltedLoads
 from propmdao.analysis.results import MECHANISMS, Analysis
 from propmdao.analysis.self_noise import BANDS_HZ
 from propmdao.figures.directivity import directivity, hemisphere_map
+from propmdao.figures.flow.disks import disk_of_loads
 from propmdao.figures.pressure import blade_passage, pressure
 from propmdao.figures.sound import Sound, band_levels, source_levels
 from propmdao.figures.spectra import harmonic_spectrum, narrowband_spectrum, third_octaves
@@ -30,7 +32,7 @@ def analysis_figures(
     Parameters
     ----------
     analysis : Analysis
-        Analysis with one observer or more.
+        Analysis with one observer or more, or at an incidence.
     observer : int, optional
         Index of the observer of spectrum and pressure, by default that of the loudest tones.
     a_weighted : bool
@@ -42,25 +44,32 @@ def analysis_figures(
         "spectrum" and "pressure" at one observer, "third_octaves" there with broadband noise,
         "directivity" of an arc of three observers or more, "hemisphere" of a hemisphere. Further
         ones are numbered: "directivity_2", "hemisphere_2" ... . Observers without groups count as
-        an arc where all are at one distance and azimuth.
+        an arc where all are at one distance and azimuth. At an incidence also "disk", the loads
+        over the disk.
 
     Raises
     ------
     ValueError
-        If there are no observers, there is no such one, or the rotor stands still.
+        If there are no observers and no incidence, there is no such observer, or the rotor stands
+        still.
     """
     positions = analysis.listening.observers
+    title = operation(analysis)
+    disk = {}
+    if isinstance(analysis.loads, TiltedLoads):
+        disk["disk"] = disk_of_loads(analysis.loads, f"{title}; seen from the thrust's side")
     if len(positions) == 0:
-        raise ValueError("figures need observers")
+        if not disk:
+            raise ValueError("figures need observers, or an incidence")
+        return disk
     if observer is None:
         observer = int(np.argmax(np.asarray(oaspl_db(analysis.tones.total))))
     if not 0 <= observer < len(positions):
         raise ValueError(f"observer must be within 0 ... {len(positions) - 1}; it is {observer}")
     sound = analysis_sound(analysis)
-    figures = _at_observer(analysis, sound, observer)
+    figures = disk | _at_observer(analysis, sound, observer)
     levels = source_levels(sound, a_weighted)
     label = f"OASPL, {LEVEL_DBA if a_weighted else LEVEL}"
-    title = operation(analysis)
     numbers = {"directivity": 0, "hemisphere": 0}
     for kind, members in observer_groups(analysis.listening):
         here = {source: level[members] for source, level in levels.items()}
@@ -140,7 +149,7 @@ def _at_observer(analysis: Analysis, sound: Sound, observer: int) -> dict[str, F
 
 
 def operation(analysis: Analysis) -> str:
-    """Propeller, rotation speed and flight speed for titles.
+    """Propeller, rotation speed and flight for titles.
 
     Parameters
     ----------
@@ -152,8 +161,10 @@ def operation(analysis: Analysis) -> str:
     str
         In words.
     """
-    speed = float(analysis.point.speed)
+    speed, incidence = float(analysis.point.speed), analysis.point.incidence_deg
     flight = f"{speed:.4g} m/s" if speed else "hover"
+    if incidence:
+        flight += f" at an incidence of {incidence:.4g}°"
     return f"{analysis.propeller.name}, {analysis.rpm:.0f} rpm, {flight}"
 
 

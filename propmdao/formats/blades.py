@@ -9,7 +9,7 @@ import jax.numpy as jnp
 import numpy as np
 
 from propmdao.formats.endings import STL_UNITS
-from propmdao.formats.stl import rotor_triangles, write_stl
+from propmdao.formats.meshes.stl import rotor_triangles, write_stl
 from propmdao.geometry.blade import Blade, span_interpolation
 from propmdao.geometry.meshes import propeller_surface
 from propmdao.geometry.section import section_shape

@@ -1,14 +1,20 @@
-"""How finely the blade, its wake and its sound are resolved."""
+"""How finely the blade, its wake and its sound are resolved, and loads that are marched in time."""
 
 from __future__ import annotations
 
 import dataclasses
+from typing import Literal, get_args
 
-from propmdao.records.quantities import Range
+from propmdao.records.quantities import require_asked
+from propmdao.records.units import Range
 from propmdao.records.wake_law import WakeGrid
 
 #: Panels of the lattice on a blade: the unknowns, whose matrix has 128 MiB.
 MOST_PANELS = 4096
+#: What there is when the march begins: a rotor set going in still air, or its steady solution.
+Start = Literal["steady", "impulsive"]
+#: How the wake moves: by the law of the steady solution, or with the local velocity.
+WakeMotion = Literal["prescribed", "free"]
 
 
 @dataclasses.dataclass(frozen=True)
@@ -65,3 +71,115 @@ class Fidelity:
             raise ValueError(
                 f"n_chordwise times n_spanwise must be at most {MOST_PANELS}; it is {n_panels}"
             )
+
+
+@dataclasses.dataclass(frozen=True)
+class FreeWake:
+    """Wake whose nodes move with the local velocity; hashable, fixed at compile time.
+
+    Attributes
+    ----------
+    turns : float
+        Revolutions for which a node moves freely. Over the next one the law of the prescribed wake
+        takes over, which carries the rest of the wake.
+    core : float
+        Core radius with which the wake acts on itself when it is shed, over the tip radius; it
+        grows with age. What acts on the blades keeps the core of the prescribed wake.
+    n_filaments : int
+        Filaments of a blade that move, at most those of the lattice; the others are carried along.
+    step_deg : float
+        Spacing of the nodes that move [deg]; at least the time step.
+
+    Raises
+    ------
+    ValueError
+        If a number is out of range.
+    """
+
+    turns: float = 3.0
+    core: float = 0.03
+    n_filaments: int = 13
+    step_deg: float = 10.0
+
+    def __post_init__(self) -> None:
+        """Refuse numbers of which no wake is made."""
+        Range(0.25, 50.0).require("turns of a free wake", self.turns)
+        Range(0.001, 0.5).require("core of a free wake", self.core)
+        Range(3, 101).require("n_filaments of a free wake", self.n_filaments)
+        Range(1.0, 45.0, "deg").require("step_deg of a free wake", self.step_deg)
+
+
+@dataclasses.dataclass(frozen=True)
+class Marching:
+    """Schedule of a march in time; hashable.
+
+    Attributes
+    ----------
+    revolutions : int
+        Revolutions that are marched.
+    average : int
+        Last revolutions of which the loads are the mean.
+    timestep_deg : float
+        Angle by which the rotor turns in a step [deg]; a revolution is a whole number of steps.
+    start : {"steady", "impulsive"}
+        The march begins with circulation and wake of the steady solution in axial flight, or with
+        no wake at all.
+    wake_motion : {"prescribed", "free"}
+        The wake moves by the law of the steady solution, or with the local velocity.
+    free_wake : FreeWake
+        Resolution of a free wake.
+    tolerance : float
+        Change of the thrust from one revolution to the next, over the thrust, that counts as none.
+    stop_when_settled : bool
+        Whether the march ends as soon as the revolutions of the mean, and the one before them,
+        change no more.
+
+    Raises
+    ------
+    ValueError
+        If a number is out of range, the step does not divide a revolution, or more revolutions are
+        averaged than marched.
+    """
+
+    revolutions: int = 4
+    average: int = 3
+    timestep_deg: float = 3.0
+    start: Start = "steady"
+    wake_motion: WakeMotion = "prescribed"
+    free_wake: FreeWake = FreeWake()
+    tolerance: float = 0.01
+    stop_when_settled: bool = False
+
+    def __post_init__(self) -> None:
+        """Refuse schedules that cannot be kept."""
+        for name in ("revolutions", "average"):
+            require_asked(name, value := getattr(self, name))
+            if value != int(value):
+                raise ValueError(f"{name} must be a whole number; it is {value:g}")
+            # The attribute of a frozen dataclass can only be set this way.
+            object.__setattr__(self, name, int(value))
+        if self.average > self.revolutions:
+            raise ValueError(
+                f"average must be at most the revolutions, {self.revolutions:g}; it is"
+                f" {self.average:g}"
+            )
+        require_asked("timestep_deg", self.timestep_deg)
+        if abs(360.0 / self.timestep_deg - self.steps_per_turn) > 1e-9 * self.steps_per_turn:
+            raise ValueError(
+                f"timestep_deg must divide a revolution of 360 deg; it is {self.timestep_deg:.10g}"
+            )
+        for name, words in (("start", Start), ("wake_motion", WakeMotion)):
+            if getattr(self, name) not in get_args(words):
+                known = ", ".join(get_args(words))
+                raise ValueError(f"{name} must be one of {known}; it is {getattr(self, name)!r}")
+        Range(0.0, 1.0).require("tolerance", self.tolerance)
+
+    @property
+    def steps_per_turn(self) -> int:
+        """Time steps of a revolution."""
+        return round(360.0 / self.timestep_deg)
+
+    @property
+    def n_steps(self) -> int:
+        """Time steps of the whole march."""
+        return self.revolutions * self.steps_per_turn

@@ -5,7 +5,7 @@ from __future__ import annotations
 import dataclasses
 from typing import Literal, get_args
 
-from propmdao.records.fidelity import Fidelity
+from propmdao.records.fidelity import Fidelity, Marching
 from propmdao.records.quantities import require_asked
 from propmdao.records.wake_law import WakeLaw
 
@@ -156,11 +156,13 @@ class LoadModel:
         wind tunnels measure at equal lift; False leaves it as computed.
     elastic : ElasticModel or None
         Blade that twists and bends under its loads; None (default) is a rigid one.
+    unsteady : Marching or None
+        March in time; None (default) solves for the flow that repeats.
 
     Raises
     ------
     ValueError
-        If an elastic blade is to be loaded by inviscid flow.
+        If an elastic blade is to be loaded by inviscid flow, or marched in time.
     """
 
     viscous: bool = True
@@ -169,9 +171,12 @@ class LoadModel:
     transition: Transition = Transition()
     measured_drag: bool = True
     elastic: ElasticModel | None = None
+    unsteady: Marching | None = None
 
     def __post_init__(self) -> None:
-        """Refuse an elastic blade without the moments of its sections."""
+        """Refuse an elastic blade without the moments of its sections, or in a march."""
+        if self.elastic is not None and self.unsteady is not None:
+            raise ValueError("an elastic blade is known in steady flow alone: leave out unsteady")
         if self.elastic is not None and not self.viscous:
             raise ValueError(
                 "an elastic blade needs the moments of its sections, which inviscid flow has not"
@@ -188,7 +193,7 @@ class SelfNoiseModel:
         Trip of the boundary layers in the noise model; it does not change the loads. "none" leaves
         it to the transition of the loads (`Model.completed`).
     tip : {"rounded", "square"}
-        Planform of the blade's tip.
+        Planform of the blade's tip. "rounded" leaves it to the propeller's description.
 
     Raises
     ------
@@ -238,13 +243,15 @@ class Model:
     noise: NoiseModel = NoiseModel()
     fidelity: Fidelity = Fidelity()
 
-    def completed(self, described: Transition) -> Model:
+    def completed(self, described: Transition, tip: Tip | None) -> Model:
         """Fill in what the model leaves to the propeller.
 
         Parameters
         ----------
         described : Transition
             Transition of the propeller's description.
+        tip : {"rounded", "square"} or None
+            Tip of the propeller's description; None says nothing about it.
 
         Returns
         -------
@@ -253,8 +260,11 @@ class Model:
             are.
         """
         transition, noise = self.loads.transition.completed(described), self.noise
-        if noise.broadband is not None and noise.broadband.trip == "none":
-            broadband = dataclasses.replace(noise.broadband, trip=transition.trip_in_noise)
+        if (broadband := noise.broadband) is not None:
+            if broadband.trip == "none":
+                broadband = dataclasses.replace(broadband, trip=transition.trip_in_noise)
+            if broadband.tip == "rounded" and tip is not None:
+                broadband = dataclasses.replace(broadband, tip=tip)
             noise = dataclasses.replace(noise, broadband=broadband)
         loads = dataclasses.replace(self.loads, transition=transition)
         return dataclasses.replace(self, loads=loads, noise=noise)

@@ -7,9 +7,9 @@ nomenclature page (docs/conventions.md) come from this table. Nothing here is sl
 from __future__ import annotations
 
 import dataclasses
-import math
-import reprlib
 from typing import Any
+
+from propmdao.records.units import Range
 
 # Records that hold quantities that are asked for, as a dotted path from the request; results have
 # none.
@@ -17,64 +17,7 @@ POINT, AIR, CHANGE = "point", "point.air", "change"
 LOADS, SELF_NOISE, FIDELITY = "model.loads", "model.noise.broadband", "model.fidelity"
 TRANSITION = "model.loads.transition"
 ELASTIC = "model.loads.elastic"
-
-
-@dataclasses.dataclass(frozen=True)
-class Range:
-    """Values that a number may have: wide, but such that something of the kind can exist.
-
-    Attributes
-    ----------
-    lowest, highest : float
-        Ends of the range, which belong to it.
-    unit : str
-        Unit of the number, as messages have it; empty where there is none.
-    or_zero : bool
-        Whether 0, which is below the range, is allowed beside it.
-    """
-
-    lowest: float
-    highest: float
-    unit: str = ""
-    or_zero: bool = False
-
-    def __str__(self) -> str:
-        """Describe the range in words that follow "must be"."""
-        zero = "0 or " if self.or_zero else ""
-        unit = f" {self.unit}" if self.unit else ""
-        return f"{zero}within {self.lowest:.10g} ... {self.highest:.10g}{unit}"
-
-    def __contains__(self, value: float) -> bool:
-        """Whether a number is allowed; what is no number is not."""
-        return self.lowest <= value <= self.highest or (self.or_zero and value == 0.0)
-
-    def require(self, name: str, value: Any, error: type[ValueError] = ValueError) -> None:
-        """Refuse a value that is not in the range.
-
-        Parameters
-        ----------
-        name : str
-            Name of the value in the message.
-        value : float
-            The value.
-        error : type
-            Exception that is raised, a ValueError.
-
-        Raises
-        ------
-        ValueError
-            If the value is no number or outside the range; an exception of the type `error`.
-        """
-        try:
-            number = float(value)
-            if isinstance(value, str | bytes):
-                raise TypeError
-        except (TypeError, ValueError):
-            raise error(f"{name} must be a number; it is {reprlib.repr(value)}") from None
-        except OverflowError:  # a whole number of hundreds of digits
-            number = math.inf
-        if number not in self:
-            raise error(f"{name} must be {self}; it is {number:.10g}")
+UNSTEADY = "model.loads.unsteady"
 
 
 @dataclasses.dataclass(frozen=True)
@@ -108,6 +51,9 @@ class Quantity:
         Help of the option; by default the meaning with the unit.
     allowed : Range or None
         Values that are allowed; None for words, switches and results.
+    axes : tuple of str
+        Axes of a vector's components; empty for a number. In JSON and components a vector is a
+        list, in tables a column for each axis.
     """
 
     name: str
@@ -122,6 +68,7 @@ class Quantity:
     placeholder: str = ""
     help: str = ""
     allowed: Range | None = None
+    axes: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
         """Fill in the names that are the same."""
@@ -132,6 +79,11 @@ class Quantity:
         if not self.help:
             unit = f" [{self.unit}]" if self.unit else ""
             object.__setattr__(self, "help", self.meaning + unit)
+
+    @property
+    def columns(self) -> tuple[str, ...]:
+        """Columns in tables: one, or one for each axis of a vector."""
+        return tuple(f"{self.json}_{axis}" for axis in self.axes) or (self.json,)
 
 
 _ASKED = (
@@ -154,7 +106,7 @@ _ASKED = (
     ),
     Quantity(
         "incidence_deg", "deg", "angle between shaft and direction of flight, 0 is axial flight",
-        POINT, 0.0, option="--incidence", placeholder="DEG",
+        POINT, 0.0, variable="incidence", option="--incidence", placeholder="DEG",
         help="angle between the shaft and the direction of flight [deg], default 0: axial, 90"
         " edgewise, above 90 with a descending part. A drone that leans forward by 20 deg in level"
         " flight flies at 70",
@@ -265,6 +217,39 @@ _ASKED = (
         allowed=Range(1.0, 25000.0, "kg/m3"),
     ),
     Quantity(
+        "unsteady", "", "loads marched in time", LOADS, False, per_node=False, option="--unsteady",
+        help="march the loads in time, step by step, instead of solving for what repeats: for a"
+        " free wake and as a check; needs --rpm",
+    ),
+    Quantity(
+        "revolutions", "", "revolutions of a march", UNSTEADY, 4, per_node=False,
+        option="--revolutions", placeholder="N", help="revolutions that are marched, default 4",
+        allowed=Range(1, 1000),
+    ),
+    Quantity(
+        "average", "", "last revolutions of a march of which loads are the mean", UNSTEADY, 3,
+        per_node=False, option="--average", placeholder="N",
+        help="last revolutions of which the loads are the mean, default 3",
+        allowed=Range(1, 1000),
+    ),
+    Quantity(
+        "timestep_deg", "deg", "angle by which the rotor turns in a time step", UNSTEADY, 3.0,
+        per_node=False, option="--timestep", placeholder="DEG",
+        help="angle by which the rotor turns in a time step, which divides 360 [deg], default 3",
+        allowed=Range(0.25, 45.0, "deg"),
+    ),
+    Quantity(
+        "start", "", "what a march begins with", UNSTEADY, "steady", per_node=False,
+        option="--start", placeholder="{steady,impulsive}",
+        help="begin the march with the steady wake of axial flight (default) or with none",
+    ),
+    Quantity(
+        "wake_motion", "", "how the wake of a march moves", UNSTEADY, "prescribed",
+        per_node=False, option="--wake", placeholder="{prescribed,free}",
+        help="how the wake of the march moves: by the law of the steady solution (default), or"
+        " freely, every node with the local velocity",
+    ),
+    Quantity(
         "broadband", "", "broadband self-noise beside the tones", "model.noise", False,
         per_node=False, option="--broadband", help="add the broadband self-noise to the tones",
     ),
@@ -294,6 +279,18 @@ _RESULTS = (
     Quantity("failure", "", "why it has not, or null"),
 )  # fmt: skip
 
+# In the axes of docs/conventions.md, which do not turn with the blades.
+_HUB_LOADS = (
+    Quantity(
+        "hub_force", "N", "mean force of all blades on the hub; z is the shaft, the rotor flies"
+        " toward z and x", axes=("x", "y", "z"),
+    ),
+    Quantity(
+        "hub_moment", "N*m", "mean moment of all blades on the hub about the rotor's centre; -z is"
+        " the torque", axes=("x", "y", "z"),
+    ),
+)  # fmt: skip
+
 _LEVELS = (
     Quantity("spl_bpf_db", "dB", "level of the tone at the blade passage frequency"),
     Quantity("oaspl_db", "dB", "overall level of the tones"),
@@ -313,6 +310,8 @@ _BROADBAND_LEVELS = (
 ASKED = {quantity.name: quantity for quantity in _ASKED}
 #: What an analysis finds, by name.
 RESULTS = {quantity.name: quantity for quantity in _RESULTS}
+#: Force and moment of the rotor on what carries it, by name.
+HUB_LOADS = {quantity.name: quantity for quantity in _HUB_LOADS}
 #: Levels of the tones at an observer, by name.
 LEVELS = {quantity.name: quantity for quantity in _LEVELS}
 #: Levels at an observer that broadband noise adds, by name.

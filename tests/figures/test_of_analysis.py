@@ -35,7 +35,8 @@ def analysis(observers, groups=(), broadband=False, surroundings=FREE_FIELD):
     return SimpleNamespace(
         propeller=SimpleNamespace(name="blade"),
         rpm=4200.0,
-        point=SimpleNamespace(speed=8.0),
+        point=SimpleNamespace(speed=8.0, incidence_deg=0.0),
+        loads=None,
         tones=Tones(140.0 * jnp.arange(1.0, 4.0), {"thickness": thickness, "loading": loading}),
         broadband=SelfNoise(**noise) if broadband else None,
         listening=Listening(observers, surroundings, groups),
@@ -53,7 +54,7 @@ def test_figures_of_what_there_is():
 
 
 def test_figures_need_observers_that_there_are():
-    with pytest.raises(ValueError, match="figures need observers"):
+    with pytest.raises(ValueError, match="figures need observers, or an incidence"):
         analysis_figures(analysis(np.zeros((0, 3))))
     for wrong in (-1, 3):
         with pytest.raises(ValueError, match=f"observer must be within 0 ... 2; it is {wrong}"):

@@ -10,6 +10,7 @@ import pytest
 
 from propmdao.propeller.changes import Change
 from propmdao.records.air import Air
+from propmdao.records.fidelity import Marching
 from propmdao.records.listening import Listening
 from propmdao.records.models import (
     ElasticModel,
@@ -21,14 +22,15 @@ from propmdao.records.models import (
 from propmdao.records.quantities import (
     ASKED,
     BROADBAND_LEVELS,
+    HUB_LOADS,
     LEVELS,
     RESULTS,
     VARIABLES,
     Quantity,
-    Range,
     require_asked,
 )
 from propmdao.records.states import OperatingPoint
+from propmdao.records.units import Range
 
 RECORDS = {
     "point": OperatingPoint,
@@ -37,6 +39,7 @@ RECORDS = {
     "model.loads": LoadModel,
     "model.loads.transition": Transition,
     "model.loads.elastic": ElasticModel,
+    "model.loads.unsteady": Marching,
     "model.noise": NoiseModel,
     "model.noise.broadband": SelfNoiseModel,
     "listening": Listening,
@@ -49,12 +52,13 @@ def repeated(names):
 
 def test_names_options_and_keys_are_unique():
     # Thrust is asked for and found, in JSON as `point.thrust` and as `thrust`.
-    found = [*RESULTS, *LEVELS, *BROADBAND_LEVELS]
+    found = [*RESULTS, *HUB_LOADS, *LEVELS, *BROADBAND_LEVELS]
     assert not repeated(found) and set(ASKED) & set(found) == {"thrust"}
     options = [quantity.option for quantity in ASKED.values() if quantity.option]
     assert not repeated(options) and all(option.startswith("--") for option in options)
-    quantities = [*ASKED.values(), *RESULTS.values(), *LEVELS.values(), *BROADBAND_LEVELS.values()]
-    assert repeated(quantity.json for quantity in quantities) == ["thrust"]
+    tables = ASKED, RESULTS, HUB_LOADS, LEVELS, BROADBAND_LEVELS
+    quantities = [quantity for table in tables for quantity in table.values()]
+    assert repeated(name for quantity in quantities for name in quantity.columns) == ["thrust"]
     assert not repeated(quantity.variable for quantity in quantities)
 
 
@@ -62,7 +66,11 @@ def test_names_options_and_keys_are_unique():
 def test_what_may_be_asked_is_a_field_of_its_record_with_the_same_default(quantity: Quantity):
     fields = {field.name: field for field in dataclasses.fields(RECORDS[quantity.record])}
     default = fields[quantity.name].default
-    if quantity.name in ("broadband", "elastic"):  # a switch here, a model or none there
+    if quantity.name in (
+        "broadband",
+        "elastic",
+        "unsteady",
+    ):  # a switch here, a model or none there
         assert quantity.default is False and default is None
     else:
         assert quantity.default == default
@@ -103,6 +111,11 @@ def test_a_range_holds_its_ends_and_says_zero_where_that_is_allowed():
     assert str(turning) == "0 or within 0.5 ... 2 rpm" and str(Range(0, 1)) == "within 0 ... 1"
     with pytest.raises(ValueError, match="^x must be a number; it is None$"):
         turning.require("x", None)
+
+
+def test_a_vector_has_a_column_for_each_axis_and_a_number_one():
+    assert HUB_LOADS["hub_force"].columns == ("hub_force_x", "hub_force_y", "hub_force_z")
+    assert RESULTS["eta"].columns == ("eta",)
 
 
 def test_a_sweep_varies_operation_and_blade():

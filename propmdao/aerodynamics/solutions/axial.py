@@ -10,6 +10,8 @@ needs of it (`propmdao.aerodynamics.trim.Solver`).
 
 from __future__ import annotations
 
+from functools import partial
+
 import jax.numpy as jnp
 from jax import Array
 
@@ -22,13 +24,13 @@ from propmdao.aerodynamics.solutions.lattice_loads import (
     lattice_geometry,
     loads_with_wake,
 )
+from propmdao.aerodynamics.solutions.point_sums import strip_loads
 from propmdao.aerodynamics.solutions.result import (
     RotorLoads,
     sections_agree,
-    strip_loads,
     unless_still,
 )
-from propmdao.aerodynamics.solutions.roots import at_root, decreasing_root
+from propmdao.aerodynamics.solutions.roots import Guess, at_root, decreasing_root, empty
 from propmdao.aerodynamics.vortices.cores import core_radius, middles
 from propmdao.aerodynamics.wakes.helical import helical_wake
 from propmdao.aerodynamics.wakes.momentum import (
@@ -165,15 +167,17 @@ def solve(case: RotorCase, thrust_guess: Scalar = 0.0) -> RotorLoads:
         tip_speed = state.rotation_speed * flow.case.rotor.radius
         known = induced_velocity(flow, thrust_guess)
 
-        def trial(w: Array) -> tuple[Array, LatticeLoads]:
+        def trial(w: Array, _: LatticeLoads) -> tuple[Array, LatticeLoads]:
             loads = evaluate(params, w)
             return residual(params, w, loads), loads
+
+        guess = jnp.where(thrust_guess == 0.0, _GUESS * tip_speed, known)
 
         w, loads = decreasing_root(
             trial,
             lowest_induced_velocity(state, flow.case.rotor.radius),
             tip_speed,
-            jnp.where(thrust_guess == 0.0, _GUESS * tip_speed, known),
+            Guess(guess, empty(partial(evaluate, params), guess)),
             _TOLERANCE,
         )
         return w, loads, None
@@ -261,7 +265,7 @@ def rotor_loads(
     tip_speed = state.rotation_speed * rotor.radius
     agrees = jnp.abs(induced_velocity(flow, thrust) - w) < 1.0e-6 * tip_speed
     within = within_momentum_theory(thrust, state, rotor.radius)
-    strip_thrust, strip_torque = strip_loads(loads)
+    strip_thrust, strip_torque = strip_loads(loads.position, loads.force, *loads.circulation.shape)
     return RotorLoads(
         thrust=thrust,
         torque=n_blades * loads.torque,

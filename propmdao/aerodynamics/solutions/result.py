@@ -1,4 +1,4 @@
-"""The steady solution: what it holds, why it may not have converged, loads of its strips."""
+"""Solutions: what they hold, and why one may not have converged."""
 
 from __future__ import annotations
 
@@ -12,7 +12,6 @@ from jax import Array
 
 from propmdao.aerodynamics.lattice.strips import Strips
 from propmdao.aerodynamics.sections.recambering import SectionStates
-from propmdao.aerodynamics.solutions.lattice_loads import LatticeLoads
 from propmdao.records.loads import PeriodicLoads, PointLoads
 from propmdao.records.pytrees import record
 
@@ -58,6 +57,16 @@ class RotorLoads:
     strips: Strips
     sections: SectionStates
     converged: Array
+
+    @property
+    def hub_force(self) -> Array:
+        """Mean force of all blades on the hub, in the axes of `TiltedLoads`, (3,) [N]."""
+        return jnp.array([0.0, 0.0, 1.0]) * self.thrust
+
+    @property
+    def hub_moment(self) -> Array:
+        """Mean moment of all blades on the hub about the rotor's centre, (3,) [N m]."""
+        return jnp.array([0.0, 0.0, -1.0]) * self.torque
 
 
 @record
@@ -107,6 +116,11 @@ class TiltedLoads:
     sections: SectionStates
     attached: Array
     converged: Array
+
+    @property
+    def unsettled(self) -> str | None:
+        """Why the loads are not those of every turn, in one line; here they are, and it is None."""
+        return None
 
 
 _Loads = TypeVar("_Loads", RotorLoads, TiltedLoads)
@@ -169,6 +183,8 @@ def failure(solution: RotorLoads | TiltedLoads) -> str | None:
             "beyond its polar: chord or twist changes too much from station to station for one"
             " solution"
         )
+    if isinstance(solution, TiltedLoads) and solution.unsettled is not None:
+        return solution.unsettled
     return (
         f"thrust {float(solution.thrust):.4g} N and induced velocity "
         f"{float(solution.induced_velocity):.4g} m/s do not agree with momentum theory: "
@@ -209,30 +225,3 @@ def unless_still(turning: Array, loads: _Loads) -> _Loads:
         converged=jnp.asarray(True),
     )
     return jax.tree.map(lambda moving, still: jnp.where(turning, moving, still), loads, still)
-
-
-def strip_loads(loads: LatticeLoads) -> tuple[Array, Array]:
-    """Thrust and torque of each strip; a chordwise segment belongs half to either side.
-
-    Parameters
-    ----------
-    loads : LatticeLoads
-        Loads of blade 1, ns strips.
-
-    Returns
-    -------
-    thrust, torque : (ns,) array
-        Thrust and torque of each strip, which add up to the blade's [N], [N m].
-    """
-    nc, ns = loads.circulation.shape
-    x, y = loads.position[:, 0], loads.position[:, 1]
-    torque = y * loads.force[:, 0] - x * loads.force[:, 1]
-
-    def by_strip(of_segment: Array) -> Array:
-        bound = of_segment[: nc * ns].reshape(nc, ns).sum(axis=0)
-        edge = of_segment[nc * ns : -ns].reshape(nc, ns + 1).sum(axis=0)
-        # The outermost edges have one strip only.
-        share = edge * jnp.full(ns + 1, 0.5).at[jnp.array([0, ns])].set(1.0)
-        return bound + share[:-1] + share[1:] + of_segment[-ns:]
-
-    return by_strip(loads.force[:, 2]), by_strip(torque)

@@ -23,6 +23,9 @@ from jax import Array
 from propmdao.records.pytrees import Scalar
 
 _FOUR_PI = 4.0 * jnp.pi
+# Least |a|^2 |b|^2: where a point is an end of the segment, which then induces nothing there. In
+# single precision lengths have to be of order one.
+_LEAST = {"float32": 1.0e-12, "float64": 1.0e-300}
 
 
 def _products(p: Array, a: Array, b: Array) -> tuple[Array, Array, Array]:
@@ -39,7 +42,7 @@ def _products(p: Array, a: Array, b: Array) -> tuple[Array, Array, Array]:
 def _kernel(p: Array, a: Array, b: Array, core4: Array) -> Array:
     """K such that v = K (a x b), (n_segments, n_points), of p, a, b: (3, n), core4: (n,)."""
     aa, bb, d = _products(p, a, b)
-    qq = aa * bb
+    qq = jnp.maximum(aa * bb, _LEAST[aa.dtype.name])
     q = jnp.sqrt(qq)
     cross2 = qq - d * d
     k = (q - d) * jnp.sqrt((aa + bb + 2.0 * q) / (qq * (cross2 * cross2 + core4[:, None])))

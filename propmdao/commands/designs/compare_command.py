@@ -145,8 +145,7 @@ def _compare(options: argparse.Namespace) -> None:
     if observer is None:
         print_line("No observers: --arc RADIUS ELEVATION... adds their noise.")
     elif first["model"]["noise"]["broadband"] is None:
-        tilted = first["point"]["incidence_deg"]
-        print_line(report.TONES_OF_A_TILTED_ROTOR if tilted else report.TONES_ONLY)
+        print_line(report.TONES_ONLY)
     files = _write(options, propellers, analyses, observer)
     if files:
         print_line(" ".join(["Files:", *files]))

@@ -37,6 +37,8 @@ class Answer:
             "thrust": rpm**2,
             "converged": True,
             "failure": None,
+            "hub_force": [0.1, -0.2, rpm**2],
+            "hub_moment": [0.01, -0.02, -0.5],
             "observers": [dict(levels) for _ in self.request.listening.observers],
         }
 

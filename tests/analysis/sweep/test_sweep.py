@@ -51,6 +51,8 @@ def test_a_point_is_passed_on_and_its_results_are_a_row(
     assert asked.model == Model()
     assert row["propeller"] == propeller.name and row["n_blades"] == "3"
     assert float(row["thrust"]) == 9e6 and row["converged"] == "True"
+    assert [row[f"hub_force_{axis}"] for axis in "xyz"] == ["0.1", "-0.2", row["thrust"]]
+    assert [row[f"hub_moment_{axis}"] for axis in "xyz"] == ["0.01", "-0.02", "-0.5"]
     assert row["oaspl_db@1.905m-45deg"] == row["spl_bpf_db@2m+0deg"] == "50.0"
     assert (row["rho"], row["chord_factor"], row["diameter"]) == ("1.1", "1.1", "0.3")
 
@@ -166,6 +168,25 @@ def test_noise_is_heard_in_the_same_way_at_all_points(
     # What is heard in another way is another sweep: its columns differ.
     with pytest.raises(ValueError, match="oaspl_broadband_db@1.905m-20deg only there"):
         sweep(propeller, points, path, observers=places)
+
+
+def test_a_table_from_before_the_incidence_is_left_alone_and_the_difference_named(
+    analyzer: Any, propeller: Propeller, tmp_path: Path
+) -> None:
+    path, points = tmp_path / "sweep.csv", [{"rpm": 3000.0}]
+    sweep(propeller, points, path)
+    rows = rows_of(path)
+    later = ("incidence_deg", "hub_force_x")
+    with path.open("w", newline="") as file:
+        old = [name for name in rows[0] if name not in later]
+        writer = csv.DictWriter(file, old, extrasaction="ignore", lineterminator="\n")
+        writer.writeheader()
+        writer.writerows(rows)
+    content = path.read_bytes()
+    differ = "its columns differ: incidence_deg only here, hub_force_x only here; name another file"
+    with pytest.raises(ValueError, match=differ):
+        sweep(propeller, points, path)
+    assert path.read_bytes() == content and len(analyzer.asked) == 1
 
 
 def test_failed_points_are_rows_with_the_reason(

@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 from propmdao.formats.blades import export_stl
+from propmdao.formats.meshes.stl import rotor_triangles, write_stl
 from propmdao.formats.propellers import load_propeller
-from propmdao.formats.stl import rotor_triangles, write_stl
 from propmdao.geometry.blade import Blade
 from propmdao.geometry.surface import (
     surface_interpolation,

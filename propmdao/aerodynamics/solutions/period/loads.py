@@ -31,7 +31,7 @@ from propmdao.aerodynamics.sections.period_recambering import (
 )
 from propmdao.aerodynamics.sections.recambering import SectionStates
 from propmdao.aerodynamics.solutions.lattice_loads import LatticeGeometry, profile_drag
-from propmdao.aerodynamics.solutions.period_lattice import (
+from propmdao.aerodynamics.solutions.period.lattice import (
     PeriodLattice,
     PeriodWake,
     at_the_blades,
@@ -94,12 +94,15 @@ class PeriodBladeLoads:
         on the rings, profile drag on the sections [N].
     sections : SectionStates
         Flow, lift and drag of the sections, (n_azimuths, ns) each.
+    recambering : (n_azimuths, ns) array
+        Recambering of the sections, 0 in inviscid flow [rad].
     """
 
     circulation: Array
     position: Array
     force: Array
     sections: SectionStates
+    recambering: Array
 
     @property
     def hub_force(self) -> Array:
@@ -118,7 +121,7 @@ def azimuths_of(n_azimuths: int) -> np.ndarray:
 
 
 def tilted_onset(
-    lattice: LatticeGeometry, state: RotorState, induced_velocity: Scalar, n_azimuths: int
+    lattice: LatticeGeometry, state: RotorState, induced_velocity: Scalar, azimuths: Array
 ) -> PeriodOnset:
     """Air that meets blade 1 of a rotor in flight at an incidence.
 
@@ -130,8 +133,8 @@ def tilted_onset(
         Rotation speed, flight speed, incidence and air of the rotor.
     induced_velocity : float
         Induced velocity at the disk [m/s].
-    n_azimuths : int
-        Number of azimuths.
+    azimuths : (n_azimuths,) array
+        Azimuths of the blade [rad].
 
     Returns
     -------
@@ -139,7 +142,7 @@ def tilted_onset(
         Velocities of the air in the turning frame of the blade.
     """
     omega, edgewise, strips = state.rotation_speed, state.edgewise_speed, lattice.strips
-    psi = jnp.asarray(azimuths_of(n_azimuths))[:, None]
+    psi = azimuths[:, None]
     stream = -edgewise * jnp.cos(psi), edgewise * jnp.sin(psi)  # along x and y of the blade
 
     def air_at(x: Array, y: Array, axial: Scalar) -> Array:
@@ -177,6 +180,7 @@ def period_loads(
     rotation_speed: Scalar,
     air: Air,
     sections: ViscousSections | None,
+    start: Array | None = None,
 ) -> PeriodBladeLoads:
     """Solve for the circulation over a period in a given wake and take the forces.
 
@@ -194,6 +198,8 @@ def period_loads(
         The undisturbed air.
     sections : ViscousSections or None
         Polars that the lattice is held to; None for inviscid flow.
+    start : (n_azimuths, ns) array, optional
+        Recambering from which the search for it starts [rad]; by default none.
 
     Returns
     -------
@@ -222,7 +228,7 @@ def period_loads(
     recambering, laws = jnp.zeros((n, ns)), None
     if sections is not None:
         laws = _period_laws(lattice, onset, air, sections)
-        recambering = solve_period_recambering(flow, laws)
+        recambering = solve_period_recambering(flow, laws, recambering if start is None else start)
     by_lattice, by_motion = period_states(flow, recambering, laws)
 
     change = (flow.response @ recambering.ravel()).reshape(n, ns)
@@ -242,7 +248,7 @@ def period_loads(
 
     lift = air.density * jax.vmap(strength)(circulation)[..., None]
     lift = lift * jnp.cross(velocity.swapaxes(1, 2), geometry.segment)
-    rate = rotation_speed * jnp.asarray(_derivative(n)) @ circulation
+    rate = rotation_speed * jnp.asarray(turn_derivative(n)) @ circulation
     unsteady = air.density * rate[..., None] * lattice.ring_area
 
     def drag(states: SectionStates) -> Array:
@@ -264,6 +270,7 @@ def period_loads(
                 behind, by_motion.drag_coefficient, by_lattice.drag_coefficient
             ),
         ),
+        recambering,
     )
 
 
@@ -320,10 +327,20 @@ def _period_laws(
     )
 
 
-def _derivative(n_azimuths: int) -> np.ndarray:
+def turn_derivative(n_azimuths: int) -> np.ndarray:
     """Matrix that differentiates a Fourier series by its azimuths.
 
     The highest harmonic of an even number of them has no derivative there.
+
+    Parameters
+    ----------
+    n_azimuths : int
+        Number of azimuths of a turn.
+
+    Returns
+    -------
+    (n_azimuths, n_azimuths) array
+        The matrix [1/rad].
     """
     order = np.fft.fftfreq(n_azimuths, 1.0 / n_azimuths)
     order[np.abs(order) == n_azimuths / 2] = 0.0

@@ -1,0 +1,103 @@
+"""What a march in time finds: loads of the mean of its last revolutions, and how it got there."""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Callable
+
+import numpy as np
+from jax import Array
+
+from propmdao.aerodynamics.solutions.result import TiltedLoads
+from propmdao.records.pytrees import record
+
+
+@record
+class MarchedLoads(TiltedLoads):
+    """Loads of a march in time: the mean of the last revolutions, as loads that repeat every turn.
+
+    Attributes
+    ----------
+    thrust_history, torque_history : (n_steps,) arrays
+        Thrust and torque of all blades at each step [N], [N m].
+    change : (n_revolutions - 1,) array
+        Change of the thrust from each revolution to the next, root of the mean square over the
+        turn, over that of the thrust.
+    settled : bool
+        Whether the revolutions of the mean change by no more than the tolerance.
+    wake : (n_blades, n_filaments, n_nodes, 3) array
+        Nodes of the wake of all blades at the end, in the axes of the rotor that do not turn [m].
+    snapshots : (n_snapshots, n_blades, n_filaments, n_nodes, 3) array
+        The same at moments equally spaced over the march.
+    snapshot_azimuth : (n_snapshots,) array
+        Azimuth of blade 1 at those moments, turns counted [rad].
+    """
+
+    thrust_history: Array
+    torque_history: Array
+    change: Array
+    settled: Array
+    wake: Array
+    snapshots: Array
+    snapshot_azimuth: Array
+
+    @property
+    def unsettled(self) -> str | None:
+        """Why the revolutions are no mean that lasts, in one line; None where they are."""
+        if self.settled:
+            return None
+        if not self.change.size:
+            return "one revolution of a march does not show whether the loads repeat"
+        return (
+            f"thrust of the march changes by {100.0 * float(self.change[-1]):.2g} % from one"
+            " revolution to the next"
+        )
+
+
+@dataclasses.dataclass(frozen=True)
+class MarchProgress:
+    """Where a march is.
+
+    Attributes
+    ----------
+    step, n_steps : int
+        Steps done, and of the whole march.
+    CT : float
+        Thrust coefficient T / (rho n^2 D^4) at the step.
+    seconds_left : float
+        Time that the rest will take at the pace so far [s]; not a number before the second step.
+    memory : int
+        Memory that the march needs, about [bytes].
+    """
+
+    step: int
+    n_steps: int
+    CT: float
+    seconds_left: float
+    memory: int
+
+
+#: Called after every step.
+Progress = Callable[[MarchProgress], None]
+
+
+def changes(thrust: np.ndarray, steps_per_turn: int) -> np.ndarray:
+    """Change of the thrust from each whole revolution to the next.
+
+    Parameters
+    ----------
+    thrust : (n_steps,) array
+        Thrust at each step [N].
+    steps_per_turn : int
+        Steps of a revolution.
+
+    Returns
+    -------
+    (n_revolutions - 1,) array
+        Root of the mean square of the change over the turn, over that of the thrust.
+    """
+    turns = thrust.reshape(-1, steps_per_turn)
+    size = np.sqrt((turns**2).mean(axis=1))
+    apart = np.sqrt((np.diff(turns, axis=0) ** 2).mean(axis=1))
+    ratios: np.ndarray = apart / np.maximum(size[1:], np.finfo(float).tiny)
+    return ratios

@@ -1,0 +1,1 @@
+"""Pictures of the flow: loads over the disk, wakes, sections."""

@@ -1,0 +1,1 @@
+"""Surfaces for other programs: STL, VTK."""

@@ -1,0 +1,86 @@
+"""What the studies of mesh, time step and revolutions share: one flight, three microphones.
+
+They are those of sections 4.3 to 4.5 of the thesis (tables 4.3 and 4.4): APC-SF 11x4.7 with the
+thesis' geometry at 4003 rpm and J 0.525, inviscid, and an arc of 1.905 m at 0, -22.5 and -45 deg.
+"""
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from aerodynamic_validation import show, write_csv
+
+import propmdao as pm
+from propmdao.acoustics.levels.decibels import oaspl_db, spl_db
+from propmdao.acoustics.signals import Tones
+from propmdao.figures.flow.refinement import refinement
+from propmdao.figures.style import save
+
+PROPELLER = pm.load_propeller("apcsf_11x4.7_thesis")
+RPM, SPEED = 4003.0, 9.79
+AIR = pm.Air(density=1.225, dynamic_viscosity=1.225 * 1.516e-5)
+ELEVATION_DEG = (0.0, -22.5, -45.0)
+MICROPHONES = pm.arc(1.905, ELEVATION_DEG)
+SOURCES = ("thickness", "loading", "total")
+SHOWN = {f"total {elevation:g}, dB": ".2f" for elevation in ELEVATION_DEG}
+SHOWN |= {"thickness -45, dB": ".2f", "loading -45, dB": ".2f", "BPF -45, dB": ".2f"}
+
+
+def levels_of(tones: Tones) -> dict[str, float]:
+    """OASPL by source and microphone, and the total at the blade passage frequency [dB]."""
+    pressure = {**tones.parts, "total": tones.total}
+    levels = {
+        f"{source} {elevation:g}, dB": float(level)
+        for source in SOURCES
+        for elevation, level in zip(ELEVATION_DEG, oaspl_db(pressure[source]), strict=True)
+    }
+    of_bpf = spl_db(tones.total[:, 0])
+    return levels | {
+        f"BPF {elevation:g}, dB": float(level)
+        for elevation, level in zip(ELEVATION_DEG, of_bpf, strict=True)
+    }
+
+
+def spreads_db(rows: Sequence[Mapping[str, Any]]) -> list[float]:
+    """Highest less lowest total level of each microphone [dB]."""
+    return [
+        float(np.ptp([row[f"total {elevation:g}, dB"] for row in rows]))
+        for elevation in ELEVATION_DEG
+    ]
+
+
+def report(
+    rows: Sequence[Mapping[str, Any]], resolution: str, shown: Mapping[str, str], folder: Path
+) -> None:
+    """Print the table, write it with its figures.
+
+    Parameters
+    ----------
+    rows : sequence of mapping
+        Results by column, among them thrust and levels.
+    resolution : str
+        Column of what is varied.
+    shown : mapping of str to str
+        Formats of the columns in front of the levels.
+    folder : Path
+        Folder of the files, which is made.
+    """
+    folder.mkdir(parents=True, exist_ok=True)
+    write_csv(folder / f"{folder.name}.csv", rows)
+    show(rows, {**shown, **SHOWN})
+    names = ", ".join(f"{spread:.3f}" for spread in spreads_db(rows))
+    print(f"Spread of the total OASPL at 0, -22.5 and -45 deg: {names} dB.")
+    steps = [row[resolution] for row in rows]
+    title = f"{PROPELLER.name}, {RPM:.0f} rpm, {SPEED:g} m/s, inviscid"
+    of_run = {name: {"": [row[name] for row in rows]} for name in shown if name != resolution}
+    save(refinement(steps, of_run, resolution, title), folder / "thrust.png")
+    of_sources = {
+        f"{source}, dB re 20 µPa": {
+            f"{elevation:g}°": [row[f"{source} {elevation:g}, dB"] for row in rows]
+            for elevation in ELEVATION_DEG
+        }
+        for source in SOURCES
+    }
+    save(refinement(steps, of_sources, resolution, f"{title}, OASPL"), folder / "oaspl.png")
+    print(f"Table and figures: {folder}")

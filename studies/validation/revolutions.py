@@ -1,0 +1,44 @@
+"""Thrust and noise over the number of revolutions, as section 4.5 of the thesis varies it: 3 to 10.
+
+The march of `temporal_convergence.py` with a step of 3 deg; the first revolution is left out of the
+mean.
+"""
+
+import argparse
+import dataclasses
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+import discretisation
+from temporal_convergence import SCHEDULE, marched
+
+from propmdao.records.fidelity import Fidelity, Marching
+
+REVOLUTIONS = range(3, 11)
+SHOWN = {"revolutions": "d", "thrust, N": ".4f", "last turn, N": ".4f"}
+
+
+def compare(revolutions: Sequence[int], schedule: Marching, mesh: Fidelity) -> list[dict[str, Any]]:
+    """Results for every number of revolutions."""
+    return [
+        {"revolutions": n}
+        | marched(dataclasses.replace(schedule, revolutions=n, average=n - 1), mesh)
+        for n in revolutions
+    ]
+
+
+def main() -> None:
+    """Compute, print the table, write it with its figures."""
+    parser = argparse.ArgumentParser(description=__doc__.split("\n\n")[0])
+    parser.add_argument("--quick", action="store_true", help="3 and 4 of them, in steps of 20 deg")
+    parser.add_argument("--output", type=Path, default="results/revolutions",
+                        help="folder, default %(default)s")  # fmt: skip
+    options = parser.parse_args()
+    schedule = dataclasses.replace(SCHEDULE, timestep_deg=20.0) if options.quick else SCHEDULE
+    rows = compare(REVOLUTIONS[:2] if options.quick else REVOLUTIONS, schedule, Fidelity())
+    discretisation.report(rows, "revolutions", SHOWN, options.output.absolute())
+
+
+if __name__ == "__main__":
+    main()
