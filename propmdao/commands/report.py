@@ -136,8 +136,8 @@ def _around(result: dict[str, Any]) -> str:
     if not incidence or around.level_flight or around.ground in (None, "flush"):
         return str(around)
     climb = 90.0 - incidence
-    way = f"{'climbing' if climb > 0.0 else 'descending'} at {abs(climb):g} deg"
-    return f"{around}, shaft upright, {way if climb else 'flight along the ground'}"
+    course = f"{'climbing' if climb > 0.0 else 'descending'} at {abs(climb):g} deg"
+    return f"{around}, shaft upright, {course if climb else 'flight along the ground'}"
 
 
 def _print_propeller(console: Console, result: dict[str, Any], condition: str) -> None:
