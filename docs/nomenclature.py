@@ -11,8 +11,8 @@ from propmdao.records.quantities import (
     LEVELS,
     RESULTS,
     Quantity,
-    Range,
 )
+from propmdao.records.units import Range
 
 PAGE = Path(__file__).with_name("conventions.md")
 HEADS = ("name", "unit", "default", "range", "meaning", "JSON, column", "component", "option")

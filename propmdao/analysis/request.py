@@ -10,7 +10,7 @@ import numpy.typing as npt
 
 from propmdao.propeller.changes import Change
 from propmdao.records.air import Air
-from propmdao.records.fidelity import Fidelity
+from propmdao.records.fidelity import Fidelity, Marching, Start, WakeMotion
 from propmdao.records.listening import Listening, Surroundings
 from propmdao.records.models import (
     ElasticModel,
@@ -51,6 +51,12 @@ class Asked(TypedDict, total=False):
     youngs_modulus: float | None
     shear_modulus: float | None
     material_density: float | None
+    unsteady: bool
+    revolutions: int
+    average: int
+    timestep_deg: float
+    start: Start
+    wake_motion: WakeMotion
     broadband: bool
     trip: Trip
     wake: WakeLaw
@@ -181,6 +187,11 @@ def _model(places: Mapping[str, dict[str, Any]]) -> Model:
     if named and not elastic:
         raise ValueError(f"{named[0]} is about an elastic blade: ask for elastic, too")
     loads["elastic"] = ElasticModel(**material) if elastic else None
+    unsteady, schedule = loads.pop("unsteady", False), places.get("model.loads.unsteady", {})
+    for name, value in schedule.items():
+        if value != ASKED[name].default and not unsteady:
+            raise ValueError(f"{name} is about a march in time: ask for unsteady, too")
+    loads["unsteady"] = Marching(**schedule) if unsteady else None
     loads["transition"] = Transition(**transition)
     return Model(
         loads=LoadModel(**loads),

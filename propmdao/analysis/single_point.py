@@ -28,11 +28,13 @@ from propmdao.aerodynamics.sections.polars.sources import polar_sources
 from propmdao.aerodynamics.sections.polars.table import warn_outside
 from propmdao.aerodynamics.solutions import axial, periodic
 from propmdao.aerodynamics.solutions.case import RotorCase
+from propmdao.aerodynamics.solutions.marching.marched_loads import Progress
 from propmdao.aerodynamics.solutions.result import RotorLoads, TiltedLoads
 from propmdao.aerodynamics.trim import Solver, rotation_bounds, trim
 from propmdao.aerodynamics.wakes.helical import wake_transport
 from propmdao.analysis.elastic.deflections import Solved, deflected
 from propmdao.analysis.elastic.materials import material_of
+from propmdao.analysis.flights.marching import marched, require_marchable
 from propmdao.analysis.request import Asked, Request
 from propmdao.analysis.results import MECHANISMS, Analysis
 from propmdao.analysis.self_noise import BANDS_HZ, self_noise, strip_flow
@@ -66,6 +68,7 @@ def analyze(
     model: Model | None = None,
     listening: Listening | None = None,
     polars: SectionPolars | None = None,
+    progress: Progress | None = None,
     **asked: Unpack[Asked],
 ) -> Analysis:
     """Analyse a propeller at a rotation speed, or at the one that gives a thrust.
@@ -88,11 +91,14 @@ def analyze(
         Observers that fly along with the rotor, ground, absorption; by default nobody listens.
     polars : SectionPolars, optional
         Polars by `polars_for`, for tables of one's own; by default the catalogue's.
+    progress : callable, optional
+        Called after every step of a march in time, with a `MarchProgress`.
     **asked
         Single values: rpm, thrust [N], speed [m/s], incidence_deg, density [kg/m^3] and the rest of
         the air; twist_offset_deg, chord_factor, diameter, n_blades; viscous, stall_delay, n_crit,
         trip_upper, trip_lower, measured_drag, elastic, youngs_modulus, shear_modulus [Pa],
-        material_density [kg/m^3], broadband, trip, fidelity; observers, (n, 3) positions [m] as
+        material_density [kg/m^3], unsteady, revolutions, average, timestep_deg, start, wake_motion,
+        broadband, trip, fidelity; observers, (n, 3) positions [m] as
         `propmdao.arc` makes them, surroundings.
 
     Returns
@@ -151,6 +157,8 @@ def analyze(
             wake_transport(model.loads.wake, fidelity.wake),
             fidelity.n_azimuths,
         )
+        if model.loads.unsteady is not None:
+            return Solved(blade, panels, case, *marched(case, point, model, progress))
         if point.incidence_deg == 0.0:
             return Solved(blade, panels, case, *_solve(axial, case, point))
         return Solved(blade, panels, case, *_tilted(case, point, model))
@@ -193,6 +201,8 @@ def analyze(
 def _require_modelled(request: Request) -> None:
     """Refuse what is not modelled at an incidence, before the work."""
     point, around = request.point, request.listening.surroundings
+    if request.model.loads.unsteady is not None:
+        require_marchable(point, request.model)
     if request.model.noise.broadband is not None:
         point.require_axial("broadband noise")
     if request.model.loads.elastic is not None:

@@ -18,7 +18,7 @@ from propmdao.acoustics.sounds.recordings import (
 from propmdao.analysis.results import Analysis
 from propmdao.analysis.self_noise import BANDS_HZ
 from propmdao.formats.wav import FULL_SCALE, Recording, write_wav
-from propmdao.records.quantities import Range
+from propmdao.records.units import Range
 
 _SHORTEST = 0.01  # s
 MAX_CHANNELS = 64  # more than any player has; programs that show sound hold them

@@ -28,9 +28,9 @@ from propmdao.records.quantities import (
     LEVELS,
     RESULTS,
     VARIABLES,
-    Range,
     require_asked,
 )
+from propmdao.records.units import Range
 from propmdao.runtime.input_files import read_text
 from propmdao.runtime.locks import locked
 from propmdao.runtime.output_files import make_folder, require_writable
@@ -201,6 +201,8 @@ def sweep(
     request = Request.of(rpm=0.0, **asked)
     if request.model.loads.elastic is not None:
         raise ValueError("points of a sweep have rigid blades: analyze elastic ones one by one")
+    if request.model.loads.unsteady is not None:
+        raise ValueError("points of a sweep are not marched in time: analyze them one by one")
     same = _same_columns(request)
     complete = [_complete(propeller, point) | same for point in points]
     drives = {"rpm" if "rpm" in point else "thrust_required" for point in complete}

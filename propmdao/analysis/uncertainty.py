@@ -23,8 +23,7 @@ from propmdao.analysis.request import Request
 from propmdao.analysis.results import Analysis
 from propmdao.analysis.single_point import analyze
 from propmdao.records.models import NoiseModel, Transition
-from propmdao.records.quantities import Range
-from propmdao.records.units import RAD_PER_S
+from propmdao.records.units import RAD_PER_S, Range
 
 #: Result by its key, thrust and rpm only where they are not asked for; levels by observer.
 Values = dict[str, float | list[float]]

@@ -28,7 +28,7 @@ from propmdao.commands.output_files import (
     require_output_folder,
     save_figures,
 )
-from propmdao.commands.warning_lines import warning_lines
+from propmdao.commands.warning_lines import progress_line, warning_lines
 from propmdao.formats.endings import POLAR_READERS, described
 from propmdao.records.quantities import ASKED
 
@@ -42,7 +42,8 @@ Thrust, torque and noise of a propeller in hover (speed 0), axial flight or at a
 Steady vortex lattice held to the polars of the blade's sections, with a wake carried by the flow it
 induces, then tones by Farassat's Formulation 1A: thickness and loading noise of the full blade
 surface, heard by observers that fly along. At an --incidence the loads change around the turn: the
-lattice is solved for all azimuths together, in a wake that is carried off sideways.
+lattice is solved for all azimuths together, in a wake that is carried off sideways. With --unsteady
+it is marched in time, in that wake or in a free one.
 With --broadband also the self-noise of the blades (Brooks, Pope and Marcolini). Ground may reflect
 the sound, and air absorb it.
 
@@ -56,6 +57,7 @@ examples:
   propmdao analyze apcsf_11x4.7 --rpm 4200 --speed 8
   propmdao analyze apcsf_11x4.7 --rpm 6000 --speed 10 --incidence 70 --arc 1.905 -60 --json
   propmdao analyze apcsf_11x4.7 --rpm 6000 --speed 10 --incidence 70 --figures results --vtk results
+  propmdao analyze apcsf_11x4.7 --rpm 6000 --speed 10 --incidence 70 --unsteady --wake free
   propmdao analyze apcsf_11x4.7 --thrust 1.5 --speed 8 --arc 1.905 -45 --broadband
   propmdao analyze my_blade.toml --rpm 3000:5000:500 --arc 1.905 -45 0 45 --json
   propmdao analyze apcsf_11x4.7 --rpm 4200 --arc 1.905 -45 --band
@@ -90,6 +92,12 @@ ASKED_OPTIONS = (
     "youngs_modulus",
     "shear_modulus",
     "material_density",
+    "unsteady",
+    "revolutions",
+    "average",
+    "timestep_deg",
+    "start",
+    "wake_motion",
 )
 
 
@@ -154,8 +162,8 @@ def add_analyze(commands: argparse._SubParsersAction[Any]) -> None:
         type=Path,
         metavar="FOLDER",
         help="spectrum, third octaves and pressure at the observer of the loudest tones,"
-        " directivity of an arc, map of a hemisphere; at an incidence the loads over the disk, with"
-        " or without observers; as PNG",
+        " directivity of an arc, map of a hemisphere; at an incidence the loads over the disk and"
+        " with --unsteady the wake, also without observers; as PNG",
     )
     group.add_argument(
         "--figure-at",
@@ -174,7 +182,8 @@ def add_analyze(commands: argparse._SubParsersAction[Any]) -> None:
         type=Path,
         metavar="FOLDER",
         help="blades with pressure difference and forces of their panels, and wake with its"
-        " circulation, as files of VTK for ParaView; at an incidence at every azimuth",
+        " circulation, as files of VTK for ParaView; at an incidence at every azimuth, with"
+        " --unsteady at the end",
     )
 
 
@@ -210,7 +219,8 @@ def _analyze(options: argparse.Namespace) -> None:
     with warning_lines("analyze"):
         drag = options.measured_drag
         polars = polars_for(propeller, own, transition, drag) if options.viscous else None
-        analyses = [analyze(propeller, polars=polars, **point) for point in points]
+        shown: dict[str, Any] = {"progress": progress_line()} if options.unsteady else {}
+        analyses = [analyze(propeller, polars=polars, **shown, **point) for point in points]
     if polars is not None:
         files = {airfoil: ", ".join(names) for airfoil, *names in options.polar}
         sources = polar_sources(propeller, own, transition, drag)
@@ -256,8 +266,8 @@ def _check(options: argparse.Namespace) -> None:
             continue
         if _is_list(options.rpm):
             raise ValueError(f"{option} is of one operating point: give one --rpm")
-        drawn = option == "--vtk" or (option == "--figures" and options.incidence_deg)
-        if not placed and not drawn:
+        of_flow = options.incidence_deg or options.unsteady
+        if not placed and not (option == "--vtk" or (option == "--figures" and of_flow)):
             raise ValueError(f"{option} needs observers, as with --arc 1.905 -45")
     if options.full_scale is not None and options.wav is None:
         raise ValueError("--full-scale is of a sound file: add --wav FILE.wav")

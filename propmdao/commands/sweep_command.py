@@ -20,7 +20,8 @@ from propmdao.commands.options import (
     number_or_range,
 )
 from propmdao.commands.warning_lines import warning_lines
-from propmdao.records.quantities import VARIABLES, Range
+from propmdao.records.quantities import VARIABLES
+from propmdao.records.units import Range
 from propmdao.runtime.terminal import print_line
 
 SWEEP_DESCRIPTION = """\

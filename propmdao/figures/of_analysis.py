@@ -52,7 +52,7 @@ def analysis_figures(
     Raises
     ------
     ValueError
-        If there are no observers and no incidence, there is no such observer, or the rotor stands
+        If there are no observers, no incidence and no march, no such observer, or the rotor stands
         still.
     """
     positions = analysis.listening.observers
@@ -65,7 +65,7 @@ def analysis_figures(
         flow["wake"] = wake_picture(np.asarray(loads.wake), radius, title)
     if len(positions) == 0:
         if not flow:
-            raise ValueError("figures need observers, or an incidence")
+            raise ValueError("figures need observers, an incidence or a march in time")
         return flow
     if observer is None:
         observer = int(np.argmax(np.asarray(oaspl_db(analysis.tones.total))))

@@ -11,7 +11,7 @@ import soundfile  # type: ignore[import-untyped]
 from numpy.typing import ArrayLike
 
 from propmdao.acoustics.sounds.recordings import SAMPLE_RATE
-from propmdao.records.quantities import Range
+from propmdao.records.units import Range
 from propmdao.runtime.output_files import replacing
 
 #: Pressure of the largest number in a file.

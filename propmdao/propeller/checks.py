@@ -11,7 +11,7 @@ import numpy.typing as npt
 
 from propmdao.propeller.airfoils.airfoil import AirfoilError
 from propmdao.propeller.airfoils.library import find_airfoil
-from propmdao.records.quantities import Range
+from propmdao.records.units import Range
 
 FloatArray = npt.NDArray[np.float64]
 

@@ -5,7 +5,8 @@ from __future__ import annotations
 import dataclasses
 from typing import Literal, get_args
 
-from propmdao.records.quantities import Range
+from propmdao.records.quantities import require_asked
+from propmdao.records.units import Range
 from propmdao.records.wake_law import WakeGrid
 
 #: Panels of the lattice on a blade: the unknowns, whose matrix has 128 MiB.
@@ -14,9 +15,6 @@ MOST_PANELS = 4096
 Start = Literal["steady", "impulsive"]
 #: How the wake moves: by the law of the steady solution, or with the local velocity.
 WakeMotion = Literal["prescribed", "free"]
-
-_REVOLUTIONS = Range(1, 1000)
-_TIMESTEP = Range(0.25, 45.0, "deg")
 
 
 @dataclasses.dataclass(frozen=True)
@@ -126,7 +124,7 @@ class Marching:
     start : {"steady", "impulsive"}
         The march begins with circulation and wake of the steady solution in axial flight, or with
         no wake at all.
-    wake : {"prescribed", "free"}
+    wake_motion : {"prescribed", "free"}
         The wake moves by the law of the steady solution, or with the local velocity.
     free_wake : FreeWake
         Resolution of a free wake.
@@ -147,7 +145,7 @@ class Marching:
     average: int = 3
     timestep_deg: float = 3.0
     start: Start = "steady"
-    wake: WakeMotion = "prescribed"
+    wake_motion: WakeMotion = "prescribed"
     free_wake: FreeWake = FreeWake()
     tolerance: float = 0.01
     stop_when_settled: bool = False
@@ -155,20 +153,22 @@ class Marching:
     def __post_init__(self) -> None:
         """Refuse schedules that cannot be kept."""
         for name in ("revolutions", "average"):
-            _REVOLUTIONS.require(name, getattr(self, name))
-            if getattr(self, name) != int(getattr(self, name)):
-                raise ValueError(f"{name} must be a whole number; it is {getattr(self, name):g}")
+            require_asked(name, value := getattr(self, name))
+            if value != int(value):
+                raise ValueError(f"{name} must be a whole number; it is {value:g}")
+            # The attribute of a frozen dataclass can only be set this way.
+            object.__setattr__(self, name, int(value))
         if self.average > self.revolutions:
             raise ValueError(
                 f"average must be at most the revolutions, {self.revolutions:g}; it is"
                 f" {self.average:g}"
             )
-        _TIMESTEP.require("timestep_deg", self.timestep_deg)
+        require_asked("timestep_deg", self.timestep_deg)
         if abs(360.0 / self.timestep_deg - self.steps_per_turn) > 1e-9 * self.steps_per_turn:
             raise ValueError(
                 f"timestep_deg must divide a revolution of 360 deg; it is {self.timestep_deg:.10g}"
             )
-        for name, words in (("start", Start), ("wake", WakeMotion)):
+        for name, words in (("start", Start), ("wake_motion", WakeMotion)):
             if getattr(self, name) not in get_args(words):
                 known = ", ".join(get_args(words))
                 raise ValueError(f"{name} must be one of {known}; it is {getattr(self, name)!r}")
@@ -182,4 +182,4 @@ class Marching:
     @property
     def n_steps(self) -> int:
         """Time steps of the whole march."""
-        return int(self.revolutions) * self.steps_per_turn
+        return self.revolutions * self.steps_per_turn

@@ -8,7 +8,7 @@ from typing import Literal, get_args
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from propmdao.records.quantities import Range
+from propmdao.records.units import Range
 
 Floats = NDArray[np.float64]
 #: Distance of an observer from the rotor centre.

@@ -5,7 +5,7 @@ from __future__ import annotations
 import dataclasses
 from typing import Literal, get_args
 
-from propmdao.records.fidelity import Fidelity
+from propmdao.records.fidelity import Fidelity, Marching
 from propmdao.records.quantities import require_asked
 from propmdao.records.wake_law import WakeLaw
 
@@ -156,11 +156,13 @@ class LoadModel:
         wind tunnels measure at equal lift; False leaves it as computed.
     elastic : ElasticModel or None
         Blade that twists and bends under its loads; None (default) is a rigid one.
+    unsteady : Marching or None
+        March in time; None (default) solves for the flow that repeats.
 
     Raises
     ------
     ValueError
-        If an elastic blade is to be loaded by inviscid flow.
+        If an elastic blade is to be loaded by inviscid flow, or marched in time.
     """
 
     viscous: bool = True
@@ -169,9 +171,12 @@ class LoadModel:
     transition: Transition = Transition()
     measured_drag: bool = True
     elastic: ElasticModel | None = None
+    unsteady: Marching | None = None
 
     def __post_init__(self) -> None:
-        """Refuse an elastic blade without the moments of its sections."""
+        """Refuse an elastic blade without the moments of its sections, or in a march."""
+        if self.elastic is not None and self.unsteady is not None:
+            raise ValueError("an elastic blade is known in steady flow alone: leave out unsteady")
         if self.elastic is not None and not self.viscous:
             raise ValueError(
                 "an elastic blade needs the moments of its sections, which inviscid flow has not"

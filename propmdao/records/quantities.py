@@ -7,9 +7,9 @@ nomenclature page (docs/conventions.md) come from this table. Nothing here is sl
 from __future__ import annotations
 
 import dataclasses
-import math
-import reprlib
 from typing import Any
+
+from propmdao.records.units import Range
 
 # Records that hold quantities that are asked for, as a dotted path from the request; results have
 # none.
@@ -17,64 +17,7 @@ POINT, AIR, CHANGE = "point", "point.air", "change"
 LOADS, SELF_NOISE, FIDELITY = "model.loads", "model.noise.broadband", "model.fidelity"
 TRANSITION = "model.loads.transition"
 ELASTIC = "model.loads.elastic"
-
-
-@dataclasses.dataclass(frozen=True)
-class Range:
-    """Values that a number may have: wide, but such that something of the kind can exist.
-
-    Attributes
-    ----------
-    lowest, highest : float
-        Ends of the range, which belong to it.
-    unit : str
-        Unit of the number, as messages have it; empty where there is none.
-    or_zero : bool
-        Whether 0, which is below the range, is allowed beside it.
-    """
-
-    lowest: float
-    highest: float
-    unit: str = ""
-    or_zero: bool = False
-
-    def __str__(self) -> str:
-        """Describe the range in words that follow "must be"."""
-        zero = "0 or " if self.or_zero else ""
-        unit = f" {self.unit}" if self.unit else ""
-        return f"{zero}within {self.lowest:.10g} ... {self.highest:.10g}{unit}"
-
-    def __contains__(self, value: float) -> bool:
-        """Whether a number is allowed; what is no number is not."""
-        return self.lowest <= value <= self.highest or (self.or_zero and value == 0.0)
-
-    def require(self, name: str, value: Any, error: type[ValueError] = ValueError) -> None:
-        """Refuse a value that is not in the range.
-
-        Parameters
-        ----------
-        name : str
-            Name of the value in the message.
-        value : float
-            The value.
-        error : type
-            Exception that is raised, a ValueError.
-
-        Raises
-        ------
-        ValueError
-            If the value is no number or outside the range; an exception of the type `error`.
-        """
-        try:
-            number = float(value)
-            if isinstance(value, str | bytes):
-                raise TypeError
-        except (TypeError, ValueError):
-            raise error(f"{name} must be a number; it is {reprlib.repr(value)}") from None
-        except OverflowError:  # a whole number of hundreds of digits
-            number = math.inf
-        if number not in self:
-            raise error(f"{name} must be {self}; it is {number:.10g}")
+UNSTEADY = "model.loads.unsteady"
 
 
 @dataclasses.dataclass(frozen=True)
@@ -272,6 +215,39 @@ _ASKED = (
         option="--material-density", placeholder="KG_M3",
         help="density of the elastic blade [kg/m3]; default the propeller file's",
         allowed=Range(1.0, 25000.0, "kg/m3"),
+    ),
+    Quantity(
+        "unsteady", "", "loads marched in time", LOADS, False, per_node=False, option="--unsteady",
+        help="march the loads in time, step by step, instead of solving for what repeats: for a"
+        " free wake and as a check; needs --rpm",
+    ),
+    Quantity(
+        "revolutions", "", "revolutions of a march", UNSTEADY, 4, per_node=False,
+        option="--revolutions", placeholder="N", help="revolutions that are marched, default 4",
+        allowed=Range(1, 1000),
+    ),
+    Quantity(
+        "average", "", "last revolutions of a march of which loads are the mean", UNSTEADY, 3,
+        per_node=False, option="--average", placeholder="N",
+        help="last revolutions of which the loads are the mean, default 3",
+        allowed=Range(1, 1000),
+    ),
+    Quantity(
+        "timestep_deg", "deg", "angle by which the rotor turns in a time step", UNSTEADY, 3.0,
+        per_node=False, option="--timestep", placeholder="DEG",
+        help="angle by which the rotor turns in a time step, which divides 360 [deg], default 3",
+        allowed=Range(0.25, 45.0, "deg"),
+    ),
+    Quantity(
+        "start", "", "what a march begins with", UNSTEADY, "steady", per_node=False,
+        option="--start", placeholder="{steady,impulsive}",
+        help="begin the march with the steady wake of axial flight (default) or with none",
+    ),
+    Quantity(
+        "wake_motion", "", "how the wake of a march moves", UNSTEADY, "prescribed",
+        per_node=False, option="--wake", placeholder="{prescribed,free}",
+        help="how the wake of the march moves: by the law of the steady solution (default), or"
+        " freely, every node with the local velocity",
     ),
     Quantity(
         "broadband", "", "broadband self-noise beside the tones", "model.noise", False,

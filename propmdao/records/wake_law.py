@@ -5,7 +5,7 @@ from __future__ import annotations
 import dataclasses
 
 from propmdao.records.pytrees import Scalar, record
-from propmdao.records.quantities import Range
+from propmdao.records.units import Range
 
 # The longest and finest wake has 360,000 nodes on a filament.
 _TURNS = Range(0.01, 100.0)

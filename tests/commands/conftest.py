@@ -65,7 +65,9 @@ class Recorder:
         self.asked: list[Request] = []
         self.polars: list[Any] = []
 
-    def analyze(self, propeller: Propeller, *, polars: Any = None, **asked: Any) -> Answer:
+    def analyze(
+        self, propeller: Propeller, *, polars: Any = None, progress: Any = None, **asked: Any
+    ) -> Answer:
         records = {name: asked.pop(name, None) for name in ("change", "model", "listening")}
         request = Request.of(records, **asked)
         self.asked.append(request)

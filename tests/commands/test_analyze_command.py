@@ -21,6 +21,7 @@ from propmdao.analysis.uncertainty import Band, Effect
 from propmdao.commands.program import main
 from propmdao.propeller.changes import Change
 from propmdao.records.air import Air
+from propmdao.records.fidelity import Marching
 from propmdao.records.listening import Surroundings
 from propmdao.records.models import (
     ElasticModel,
@@ -281,7 +282,7 @@ def test_keys_are_those_promised() -> None:
     assert set(point["change"]) == {"twist_offset_deg", "chord_factor", "diameter", "n_blades"}
     assert set(point["model"]) == {"loads", "noise", "fidelity"}
     assert set(point["model"]["loads"]) == set(
-        "viscous stall_delay wake transition measured_drag elastic".split()
+        "viscous stall_delay wake transition measured_drag elastic unsteady".split()
     )
     assert set(point["listening"]) == {"observers", "surroundings", "groups"}
     assert set(point["polars"]) == {"e63", "naca4412"}
@@ -366,6 +367,7 @@ def test_help_explains_every_option(capsys: pytest.CaptureFixture[str]) -> None:
     options = "--rpm --thrust --speed --rho --twist-offset --inviscid --no-stall-delay --polar"
     options += " --n-crit --trip-upper --trip-lower"
     options += " --elastic --youngs-modulus --shear-modulus --material-density"
+    options += " --unsteady --revolutions --average --timestep --start --wake"
     options += " --arc --point --circle --hemisphere --grid --ground --level --absorption"
     options += " --broadband --trip --band --wav --seconds --full-scale --figures --figure-at"
     options += " --figure-dba --vtk --json"
@@ -435,3 +437,31 @@ def test_band_in_json_and_with_polars_of_ones_own(
     band = json.loads(capsys.readouterr().out)["band"]
     assert band == BAND.to_dict()
     assert band["effects"][1]["changes"] == [None, None]
+
+
+def test_a_march_is_asked_for_by_its_options(recorder: Any) -> None:
+    arguments = f"analyze {PROPELLER} --rpm 4000 --speed 8 --unsteady --revolutions 6 --average 2"
+    assert main([*arguments.split(), *"--timestep 10 --start impulsive --wake free".split()]) == 0
+    asked = recorder.asked[-1].model.loads.unsteady
+    assert asked == Marching(6, 2, 10.0, "impulsive", "free")
+    assert main(f"analyze {PROPELLER} --rpm 4000".split()) == 0
+    assert recorder.asked[-1].model.loads.unsteady is None
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        ("--rpm 4000 --wake free", "wake_motion is about a march in time: ask for unsteady, too"),
+        ("--rpm 4000 --unsteady --timestep 7", "timestep_deg must divide a revolution of 360 deg"),
+        ("--rpm 4000 --unsteady --revolutions 0", "revolutions must be within 1 ... 1000; it is 0"),
+        ("--rpm 4000 --unsteady --revolutions 2", "average must be at most the revolutions, 2"),
+        ("--rpm 4000 --unsteady --elastic", "an elastic blade is known in steady flow alone"),
+        ("--thrust 2 --unsteady", "a march in time needs rpm, not thrust"),
+        ("--rpm 0 --unsteady", "a rotor that does not turn cannot be marched"),
+        ("--rpm 4000 --unsteady --broadband", "broadband noise of a march in time is not known"),
+    ],
+)
+def test_what_cannot_be_marched_is_refused(
+    refused: Callable[..., str], arguments: str, message: str
+) -> None:
+    assert message in refused("analyze", PROPELLER, *arguments.split())

@@ -21,7 +21,7 @@ def test_steps_are_those_of_the_thesis():
         ({"revolutions": 2.5}, "revolutions must be a whole number; it is 2.5"),
         ({"average": 5}, "average must be at most the revolutions, 4; it is 5"),
         ({"start": "slow"}, "start must be one of steady, impulsive; it is 'slow'"),
-        ({"wake": "rigid"}, "wake must be one of prescribed, free; it is 'rigid'"),
+        ({"wake_motion": "rigid"}, "wake_motion must be one of prescribed, free; it is 'rigid'"),
     ],
 )
 def test_schedules_that_cannot_be_kept_are_refused_in_one_line(values, message):

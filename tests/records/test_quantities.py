@@ -10,6 +10,7 @@ import pytest
 
 from propmdao.propeller.changes import Change
 from propmdao.records.air import Air
+from propmdao.records.fidelity import Marching
 from propmdao.records.listening import Listening
 from propmdao.records.models import (
     ElasticModel,
@@ -26,10 +27,10 @@ from propmdao.records.quantities import (
     RESULTS,
     VARIABLES,
     Quantity,
-    Range,
     require_asked,
 )
 from propmdao.records.states import OperatingPoint
+from propmdao.records.units import Range
 
 RECORDS = {
     "point": OperatingPoint,
@@ -38,6 +39,7 @@ RECORDS = {
     "model.loads": LoadModel,
     "model.loads.transition": Transition,
     "model.loads.elastic": ElasticModel,
+    "model.loads.unsteady": Marching,
     "model.noise": NoiseModel,
     "model.noise.broadband": SelfNoiseModel,
     "listening": Listening,
@@ -64,7 +66,11 @@ def test_names_options_and_keys_are_unique():
 def test_what_may_be_asked_is_a_field_of_its_record_with_the_same_default(quantity: Quantity):
     fields = {field.name: field for field in dataclasses.fields(RECORDS[quantity.record])}
     default = fields[quantity.name].default
-    if quantity.name in ("broadband", "elastic"):  # a switch here, a model or none there
+    if quantity.name in (
+        "broadband",
+        "elastic",
+        "unsteady",
+    ):  # a switch here, a model or none there
         assert quantity.default is False and default is None
     else:
         assert quantity.default == default

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from propmdao.records.listening import DISTANCE, require_number_of_observers
-from propmdao.records.quantities import Range
+from propmdao.records.units import Range
 
 Positions = NDArray[np.float64]
 # Ten turns: a larger angle is no direction that anybody means.

@@ -201,7 +201,7 @@ def law_displacement(free: FreeFilaments, helix: Array, state: RotorState) -> Ar
     free : FreeFilaments
         Filaments that move.
     helix : (n_filaments, n_ages, 3) array
-        Their nodes by the law, behind blade 1 [m].
+        Nodes of these filaments by the law, behind blade 1 [m].
     state : RotorState
         Rotation speed and flight speed of the rotor.
 

@@ -1,1 +1,1 @@
-"""Flights over an observer: what is heard, second by second, and what it adds up to."""
+"""Flight in time: marches of a rotor, flights over an observer and what is heard of them."""

@@ -16,7 +16,7 @@ from propmdao.acoustics.levels.time_levels import sound_exposure_level_db
 from propmdao.acoustics.levels.weighting import level_dba
 from propmdao.analysis.self_noise import BANDS_HZ
 from propmdao.records.listening import HEIGHT
-from propmdao.records.quantities import Range
+from propmdao.records.units import Range
 
 #: Of the levels [s], as in certification.
 STEP = 0.5

@@ -46,7 +46,7 @@ def memory_needed(flow: MarchFlow, schedule: Marching, snapshots: int) -> int:
     wake = n_blades * (ns + 1) * n_nodes
     lattice = (1 + n_blades) * 3 * n_panels * n_points + 4 * n_blades * n_panels**2
     history = np.asarray(case.wake.ages)[-1] / (2.0 * np.pi) * schedule.steps_per_turn * m * ns
-    kept = int(schedule.average) * schedule.steps_per_turn * (3 * n_forces + n_panels)
+    kept = schedule.average * schedule.steps_per_turn * (3 * n_forces + n_panels)
     blocks = _TEMPORARIES * n_blades * n_nodes * n_segments
     total = lattice + 4 * history + 2 * kept + m * 16 * wake + blocks + 3 * snapshots * wake
     if flow.free is not None:
@@ -99,7 +99,7 @@ def require_bounded(flow: MarchFlow, totals: StepTotals, step: int, schedule: Ma
         return
     where = f"at step {step + 1} of {schedule.n_steps}"
     advice = "try a smaller timestep_deg"
-    if schedule.wake == "free":
+    if schedule.wake_motion == "free":
         advice += ", a free wake of a larger core or fewer turns, or the prescribed wake"
     if extent < _MOST_EXTENT:
         blade, strip = np.unravel_index(np.nan_to_num(lift, nan=np.inf).argmax(), lift.shape)

@@ -82,20 +82,21 @@ def march(
     thrust, torque = np.zeros((2, n_steps))
     moments: list[tuple[float, Array]] = []
     begun = time.monotonic()
+    unit = _thrust_unit(flow.case)
     done = 0
     for step in range(n_steps):
         azimuth = 2.0 * np.pi * step / steps_per_turn
         state, loads, totals = advance(flow, state, azimuth)
         require_bounded(flow, totals, step, schedule)
         thrust[step], torque[step] = float(totals.thrust), float(totals.torque)
-        kept = [*kept[-(int(schedule.average) * steps_per_turn - 1) :], loads]
+        kept = [*kept[-(schedule.average * steps_per_turn - 1) :], loads]
         done = step + 1
         if done * snapshots // n_steps > step * snapshots // n_steps:
             reached = 2.0 * np.pi * done / steps_per_turn
             moments.append((reached, resting_wake(flow, state, reached)))
         if progress is not None:
             left = (time.monotonic() - begun) / done * (n_steps - done) if done > 1 else np.nan
-            progress(MarchProgress(done, n_steps, float(thrust[step]), left, memory))
+            progress(MarchProgress(done, n_steps, thrust[step] / unit, left, memory))
         turned = schedule.stop_when_settled and done % steps_per_turn == 0
         if turned and _settled(changes(thrust[:done], steps_per_turn), schedule):
             break
@@ -120,6 +121,12 @@ def march(
     )
 
 
+def _thrust_unit(case: RotorCase) -> float:
+    """Thrust of a coefficient of 1, rho n^2 D^4 [N]."""
+    turns = float(case.state.rotation_speed) / (2.0 * np.pi)
+    return float(case.state.air.density) * turns**2 * (2.0 * float(case.rotor.radius)) ** 4
+
+
 def _stacked(kept: list[StepLoads]) -> StepLoads:
     """Loads of blade 1 at the last steps, with a leading axis."""
     return jax.tree.map(lambda *of_steps: jnp.stack(of_steps), *kept)
@@ -127,5 +134,5 @@ def _stacked(kept: list[StepLoads]) -> StepLoads:
 
 def _settled(change: np.ndarray, schedule: Marching) -> bool:
     """Whether the revolutions of the mean are alike."""
-    n = max(int(schedule.average) - 1, 1)
+    n = max(schedule.average - 1, 1)
     return change.size >= n and bool((change[-n:] <= schedule.tolerance).all())

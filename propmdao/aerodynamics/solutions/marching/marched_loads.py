@@ -65,8 +65,8 @@ class MarchProgress:
     ----------
     step, n_steps : int
         Steps done, and of the whole march.
-    thrust : float
-        Thrust of all blades at the step [N].
+    CT : float
+        Thrust coefficient T / (rho n^2 D^4) at the step.
     seconds_left : float
         Time that the rest will take at the pace so far [s]; not a number before the second step.
     memory : int
@@ -75,7 +75,7 @@ class MarchProgress:
 
     step: int
     n_steps: int
-    thrust: float
+    CT: float
     seconds_left: float
     memory: int
 

@@ -150,7 +150,7 @@ def march_flow(case: RotorCase, schedule: Marching) -> MarchFlow:
     timestep = jnp.asarray(step / case.state.rotation_speed)
     n_marched = 1 if axial_flight else case.rotor.n_blades
     lattice, free = _lattice(case), None
-    if schedule.wake == "free":
+    if schedule.wake_motion == "free":
         wanted = schedule.free_wake
         spacing = max(np.radians(wanted.step_deg), step)
         equal = spacing * np.arange(max(int(np.ceil(ages[-1] / spacing - 1e-9)), 3) + 1)
@@ -268,8 +268,8 @@ def advance(
     if flow.free is not None:
         assert state.free is not None
         free = _moved_wake(flow, state.free, loads.circulation, past.strips, w, azimuths[0])
-        way = rotor.radius * (1.0 + flow.free.ages)
-        extent = (jnp.linalg.norm(free.displacement, axis=-1) / way).max()
+        reach = rotor.radius * (1.0 + flow.free.ages)
+        extent = (jnp.linalg.norm(free.displacement, axis=-1) / reach).max()
     lift = (
         2.0
         * loads.circulation[:, -ns:]

@@ -9,7 +9,7 @@ from propmdao.aerodynamics.solutions.marching.limits import MarchError, require_
 from propmdao.aerodynamics.solutions.marching.stepping import StepTotals, march_flow
 from propmdao.records.fidelity import Marching
 
-SCHEDULE = Marching(timestep_deg=30.0, wake="free")
+SCHEDULE = Marching(timestep_deg=30.0, wake_motion="free")
 SOUND = StepTotals(jnp.asarray(1.0), jnp.asarray(0.1), jnp.full((1, 5), 0.5), jnp.asarray(0.1))
 
 

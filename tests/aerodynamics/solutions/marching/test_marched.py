@@ -95,7 +95,8 @@ def test_the_wake_is_kept_at_the_moments_that_were_asked_for(tilted):
 def test_a_free_wake_in_hover_contracts_and_descends(rotor):
     case = rotor(0.0)
     case = dataclasses.replace(case, state=dataclasses.replace(case.state, speed=0.0))
-    schedule = dataclasses.replace(SCHEDULE, wake="free", free_wake=FreeWake(1.0, 0.05, 5, 30.0))
+    free = FreeWake(turns=1.0, core=0.05, n_filaments=5, step_deg=30.0)
+    schedule = dataclasses.replace(SCHEDULE, wake_motion="free", free_wake=free)
     marched = march(case, schedule)
     tip = np.asarray(marched.wake[0, -1]) / 0.1397
     at_half_a_turn = np.abs(np.degrees(COARSE.ages) - 180.0).argmin()
