@@ -46,7 +46,7 @@ def marched(
         wake_transport(grid=mesh.period_wake),
     )
     frames = FRAMES_PER_TURN * schedule.revolutions if wake == "free" else 0
-    return march(case, dataclasses.replace(schedule, wake=wake), snapshots=frames)
+    return march(case, dataclasses.replace(schedule, wake_motion=wake), snapshots=frames)
 
 
 def twice_per_turn(loads: MarchedLoads) -> float:

@@ -27,6 +27,12 @@ SHOWN = {f"total {elevation:g}, dB": ".2f" for elevation in ELEVATION_DEG}
 SHOWN |= {"thickness -45, dB": ".2f", "loading -45, dB": ".2f", "BPF -45, dB": ".2f"}
 
 
+def analysis_with(model: pm.Model) -> pm.Analysis:
+    """Analysis of the flight, with the microphones."""
+    point = pm.OperatingPoint(rpm=RPM, speed=SPEED, air=AIR)
+    return pm.analyze(PROPELLER, point, model=model, listening=pm.Listening(MICROPHONES))
+
+
 def levels_of(tones: Tones) -> dict[str, float]:
     """OASPL by source and microphone, and the total at the blade passage frequency [dB]."""
     pressure = {**tones.parts, "total": tones.total}

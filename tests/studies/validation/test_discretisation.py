@@ -38,7 +38,7 @@ def test_a_mesh_of_the_thesis_is_a_surface_and_half_of_it_a_lattice(import_study
 
 def test_spatial_study_writes_table_and_figures(import_study, monkeypatch, capsys, tmp_path):
     spatial = import_study("spatial_convergence")
-    monkeypatch.setattr(spatial, "Fidelity", lambda: TESTED)
+    monkeypatch.setattr(spatial, "DEFAULT", TESTED)
     monkeypatch.setattr(
         spatial, "mesh_of", lambda w, u: dataclasses.replace(TESTED, n_spanwise=u // 8)
     )
