@@ -8,7 +8,7 @@ PIP := $(BIN)/python -m pip --disable-pip-version-check --quiet
 # Figures are written to files; no display is needed, or asked for.
 export MPLBACKEND := Agg
 
-.PHONY: help install study test validation lint format bench clean
+.PHONY: help install study test validation lint format bench docs notebooks clean
 
 help:
 	@echo "make install     .venv with the propmdao command (edits to the source take effect at once)"
@@ -19,6 +19,8 @@ help:
 	@echo "make lint        ruff and mypy"
 	@echo "make format      rewrite the source as 'make lint' wants it"
 	@echo "make bench       benchmarks"
+	@echo "make docs        the documentation site in build/site; its code runs, warnings are errors"
+	@echo "make notebooks   its pages with code as Jupyter notebooks in build/notebooks"
 	@echo "make clean       remove .venv and everything built"
 
 install: $(VENV)/installed
@@ -48,6 +50,17 @@ format: $(VENV)/dev
 bench: $(VENV)/dev
 	$(BIN)/python -m pytest benchmarks --benchmark-only
 
+# Pages run the propmdao command and show figures as a notebook does, so not with the backend above.
+docs: $(VENV)/docs
+	env -u MPLBACKEND PATH="$(CURDIR)/$(BIN):$$PATH" \
+	  $(BIN)/python -m sphinx -W --keep-going -q -b html docs build/site
+
+notebooks: $(VENV)/docs
+	mkdir -p build/notebooks
+	for page in $$(grep -rl '^jupytext:' docs --include='*.md'); do \
+	  $(BIN)/jupytext --quiet --to ipynb --output build/notebooks/$$(basename $$page .md).ipynb $$page || exit 1; \
+	done
+
 clean:
 	rm -rf $(VENV) build dist *.egg-info .pytest_cache .mypy_cache .ruff_cache .benchmarks
 
@@ -66,4 +79,8 @@ $(VENV)/installed: $(VENV)/created pyproject.toml
 
 $(VENV)/dev: $(VENV)/created pyproject.toml
 	$(PIP) install --editable '.[plots,test,lint]'
+	@touch $(VENV)/installed $@
+
+$(VENV)/docs: $(VENV)/created pyproject.toml
+	$(PIP) install --editable '.[plots,docs]'
 	@touch $(VENV)/installed $@

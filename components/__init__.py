@@ -3,8 +3,10 @@
 from propmdao.components.acoustics_comp import AcousticsComp
 from propmdao.components.aerodynamics_comp import AerodynamicsComp
 from propmdao.components.broadband_comp import BroadbandComp
+from propmdao.components.designs.problem_in_words import design_problem, designed_blade
 from propmdao.components.drivers.differential_evolution_driver import DifferentialEvolutionDriver
 from propmdao.components.drivers.evolution.constrained_search import Generation
+from propmdao.components.drivers.gradient_search import run_slsqp
 from propmdao.components.drivers.sweep_driver import SweepDriver
 from propmdao.components.geometry_comp import GeometryComp
 from propmdao.components.noise_objective_comp import NoiseObjectiveComp
@@ -24,4 +26,7 @@ __all__ = [
     "RotationSpeedComp",
     "SweepDriver",
     "TrimmedAerodynamicsComp",
+    "design_problem",
+    "designed_blade",
+    "run_slsqp",
 ]

@@ -2,23 +2,35 @@
 
 from __future__ import annotations
 
+import dataclasses
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
 import jax.numpy as jnp
 import openmdao.api as om
 
 from propmdao.aerodynamics.coefficients import coefficients
-from propmdao.aerodynamics.solutions import axial
-from propmdao.aerodynamics.solutions.known_root import steady_at
+from propmdao.aerodynamics.solutions.edgewise import (
+    edgewise_advance_ratio,
+    is_slow,
+    longer,
+    warn_if_fast,
+)
+from propmdao.aerodynamics.solutions.known_root import solved_at
+from propmdao.aerodynamics.solutions.period.flow import azimuths_for
 from propmdao.aerodynamics.solutions.result import RotorLoads, TiltedLoads, failure
-from propmdao.components.bases.array_function import Arrays
+from propmdao.aerodynamics.wakes.helical import wake_transport
+from propmdao.components.bases.array_function import Arrays, evaluate
 from propmdao.components.bases.nodes_comp import NodesComp
 from propmdao.components.bases.root_component import RootComponent
+from propmdao.components.inputs.point_inputs import add_point_inputs, state_at
 from propmdao.components.inputs.rotor_inputs import (
     RotorConstants,
+    RotorKind,
     add_rotor_inputs,
     check_rotor_inputs,
     declare_rotor,
+    declare_tilted,
     rotor_at,
 )
 from propmdao.records.fidelity import Fidelity
@@ -30,14 +42,21 @@ from propmdao.records.units import RAD_PER_S
 PERFORMANCE = tuple(name for name in RESULTS if name not in ("converged", "failure"))
 
 
-def n_loads(fidelity: Fidelity) -> int:
-    """Return the number of point forces on a blade: bound and chordwise segments, sections."""
+def n_loads(fidelity: Fidelity, tilted: bool = False) -> int:
+    """Return the number of point forces on a blade: bound and chordwise segments, sections.
+
+    At an incidence there is one more on each ring, Bernoulli's unsteady term.
+    """
     nc, ns = fidelity.n_chordwise, fidelity.n_spanwise
-    return nc * ns + nc * (ns + 1) + ns
+    return nc * ns + nc * (ns + 1) + ns + nc * ns * tilted
 
 
 class AerodynamicsComp(NodesComp, RootComponent):
-    """Steady vortex lattice with its helical wake, hover included.
+    """Vortex lattice with its helical wake, steady or, at an incidence, periodic; hover included.
+
+    With `tilted` the shaft may stand at an angle to the flight: the loads change around the turn,
+    and thrust, torque and what follows from them are means over it. The axes of the hub do not
+    turn: +z is the shaft, in the direction of thrust, and flight is in the plane of +z and +x.
 
     With `num_nodes` everything but the blade, `lattice_nodes`, `diameter`, `section_polars` and
     `section_thickness_over_chord`, has a leading axis of that many operating points.
@@ -51,7 +70,10 @@ class AerodynamicsComp(NodesComp, RootComponent):
     rpm : float
         Rotation speed, ``rpm``; at exactly 0 every output is 0.
     speed : float
-        Axial flight speed, 0 is hover, ``m/s``.
+        Flight speed, 0 is hover, ``m/s``.
+    incidence : float
+        Angle between the shaft and the direction of flight, 0 is axial flight, 90 edgewise,
+        ``deg``; an input with `tilted`.
     density : float
         Density of the air, ``kg/m**3``.
     section_polars : (n_spanwise, 3, n_re, n_alpha) array
@@ -74,6 +96,9 @@ class AerodynamicsComp(NodesComp, RootComponent):
     J, CT, CQ, CP : float
         Advance ratio V / (n D) and coefficients per rho n^2 D^4, rho n^2 D^5, rho n^3 D^5, with n
         in revolutions per second.
+    hub_force, hub_moment : (3,) arrays
+        Mean force and moment of all blades on the hub, about the rotor's centre, in the axes of the
+        hub, ``N``, ``N*m``; outputs with `tilted`.
     circulation : (n_chordwise, n_spanwise) array
         Circulation of the vortex rings of a blade, ``m**2/s``.
     load_position, load_force : (n_loads, 3) arrays
@@ -83,10 +108,17 @@ class AerodynamicsComp(NodesComp, RootComponent):
     section_lift_coefficient : (n_spanwise,) array
         Lift coefficients of the sections; without polars those of the lattice.
 
+    With `tilted` the last five, but `load_position`, have an axis of azimuths of blade 1 before
+    those above: equally spaced from 0, where it points along +x, as many as `fidelity` has, rounded
+    up to a multiple of the blades.
+
     Options
     -------
     num_nodes : int or None
         Number of operating points; None is a single one, with the shapes above.
+    tilted : bool
+        Flight at an incidence: the periodic lattice instead of the steady one. False by default: it
+        takes some hundred times as long.
     loads : bool
         True (default): the loads along the blade, `circulation` and those below it, are outputs.
         Without them derivatives are cheap where many are asked for, as missions do.
@@ -105,50 +137,101 @@ class AerodynamicsComp(NodesComp, RootComponent):
     Raises
     ------
     om.AnalysisError
-        If an input or a result is not finite, rotation or flight backwards, diameter or a property
-        of the air not positive, or the solution does not converge; the message has the reason and,
-        with `num_nodes`, the node.
+        If an input or a result is not finite, rotation or flight backwards, the incidence beyond
+        its range, diameter or a property of the air not positive, or the solution does not
+        converge; the message has the reason and, with `num_nodes`, the node.
+
+    Warns
+    -----
+    FastEdgewiseWarning
+        If the edgewise part of the flight is beyond 0.3 of the tip speed.
     """
+
+    static: RotorKind
 
     def initialize(self) -> None:
         super().initialize()
         self.options.declare("loads", True, types=bool, desc="loads are outputs")
         declare_rotor(self.options)
+        declare_tilted(self.options)
 
     def setup(self) -> None:
-        fidelity = self.options["fidelity"]
-        nc, ns = fidelity.n_chordwise, fidelity.n_spanwise
-        self.constants = self.search_constants = add_rotor_inputs(self)
+        fidelity, tilted = self.options["fidelity"], self.options["tilted"]
+        n_blades = self.options["n_blades"]
+        self.static = RotorKind(n_blades)
+        if tilted:
+            self.static = RotorKind(n_blades, azimuths_for(fidelity.n_azimuths, n_blades))
+        grid = fidelity.period_wake if tilted else fidelity.wake
+        self.constants = add_rotor_inputs(self, grid)
+        self.search_constants = self._search_constants(self.constants)
+        self._in_slow_flight = dataclasses.replace(
+            self.constants, wake=wake_transport(self.options["wake"], longer(grid))
+        )
         self._add_rotation_speed()
         for name in PERFORMANCE:
             quantity = RESULTS[name]
             self.add_point_output(
                 quantity.variable, units=quantity.unit or None, desc=quantity.meaning
             )
+        if tilted:
+            add_point_inputs(self, ["incidence_deg"])
+            self.add_point_output("hub_force", shape=(3,), units="N", desc="+z is the shaft.")
+            self.add_point_output("hub_moment", shape=(3,), units="N*m", desc="+z is the shaft.")
         if self.options["loads"]:
-            self._add_loads(nc, ns, n_loads(fidelity))
+            self._add_loads(fidelity)
         self.search, self.function = _steady, _at_root
         self.state, self.residual = "induced_velocity", "residual"
-        self.static = self.options["n_blades"]
 
     def _add_rotation_speed(self) -> None:
         self.add_point_input("rpm", val=4000.0, units="rpm")
 
-    def _add_loads(self, nc: int, ns: int, n: int) -> None:
+    def _search_constants(self, constants: RotorConstants) -> Any:
+        """Constants of the search, from those of the function."""
+        return constants
+
+    def _add_loads(self, fidelity: Fidelity) -> None:
+        nc, ns = fidelity.n_chordwise, fidelity.n_spanwise
+        n, n_azimuths = n_loads(fidelity, self.options["tilted"]), self.static.n_azimuths
+        around, azimuth = ((), ()) if n_azimuths is None else ((n_azimuths,), ("azimuth",))
         self.axes = {
-            "circulation": ("chordwise panel", "strip"),
+            "circulation": (*azimuth, "chordwise panel", "strip"),
             "load_position": ("load",),
-            "load_force": ("load",),
-            "section_speed": ("strip",),
-            "section_lift_coefficient": ("strip",),
+            "load_force": (*azimuth, "load"),
+            "section_speed": (*azimuth, "strip"),
+            "section_lift_coefficient": (*azimuth, "strip"),
         }
-        self.add_point_output("circulation", shape=(nc, ns), units="m**2/s")
+        self.add_point_output("circulation", shape=(*around, nc, ns), units="m**2/s")
         self.add_point_output("load_position", shape=(n, 3), units="m")
-        self.add_point_output("load_force", shape=(n, 3), units="N", desc="Force on the fluid.")
-        self.add_point_output("section_speed", shape=(ns,), units="m/s", desc="Through the air.")
         self.add_point_output(
-            "section_lift_coefficient", shape=(ns,), desc="In the middle of the strips."
+            "load_force", shape=(*around, n, 3), units="N", desc="Force on the fluid."
         )
+        self.add_point_output(
+            "section_speed", shape=(*around, ns), units="m/s", desc="Through the air."
+        )
+        self.add_point_output(
+            "section_lift_coefficient", shape=(*around, ns), desc="In the middle of the strips."
+        )
+
+    def found_at(self, inputs: Arrays) -> Mapping[str, Any]:
+        if not self.options["tilted"]:
+            return super().found_at(inputs)
+        slow = "rpm" in inputs and is_slow(_advance_ratio(inputs, inputs["rpm"]))
+        solution = self._found_in_a_wake(inputs, slow)
+        if not slow and is_slow(_advance_ratio(inputs, solution["rpm"])):
+            solution = self._found_in_a_wake(inputs, True)
+        return solution
+
+    def _found_in_a_wake(self, inputs: Arrays, slow: bool) -> Mapping[str, Any]:
+        constants = self._in_slow_flight if slow else self.constants
+        searched = self._search_constants(constants)
+        return {**evaluate(self.search, self.static, searched, inputs), "constants": constants}
+
+    def found_at_all(
+        self, points: Sequence[Arrays], batch_size: int
+    ) -> Iterable[Mapping[str, Any]]:
+        if not self.options["tilted"]:
+            return super().found_at_all(points, batch_size)
+        return map(self.found_at, points)  # each in the wake of its own length
 
     def at_rest(self, inputs: Arrays) -> bool:
         return not inputs["rpm"].any()
@@ -164,11 +247,19 @@ class AerodynamicsComp(NodesComp, RootComponent):
             raise om.AnalysisError(
                 f"{reason}, at {values['rpm'][0]:g} rpm and {inputs['speed'][0]:g} m/s"
             )
+        if self.options["tilted"]:
+            warn_if_fast(_advance_ratio(inputs, values["rpm"]), stacklevel=2)
 
 
-def _steady(inputs: Arrays, constants: RotorConstants, static: int) -> Arrays:
+def _advance_ratio(inputs: Arrays, rpm: Any) -> float:
+    """Edgewise advance ratio at a rotation speed (1,)."""
+    state = state_at(inputs, float(rpm[0]) * RAD_PER_S)
+    return edgewise_advance_ratio(state, 0.5 * inputs["diameter"][0])
+
+
+def _steady(inputs: Arrays, constants: RotorConstants, static: RotorKind) -> Arrays:
     case = rotor_at(inputs, constants, static, inputs["rpm"][0] * RAD_PER_S)
-    loads = axial.solve(case)
+    loads = static.solver.solve(case)
     return {
         **loads_outputs(loads, case.state, inputs),
         "induced_velocity": loads.induced_velocity[None],
@@ -176,9 +267,9 @@ def _steady(inputs: Arrays, constants: RotorConstants, static: int) -> Arrays:
     }
 
 
-def _at_root(inputs: Arrays, constants: RotorConstants, static: int) -> Arrays:
+def _at_root(inputs: Arrays, constants: RotorConstants, static: RotorKind) -> Arrays:
     case = rotor_at(inputs, constants, static, inputs["rpm"][0] * RAD_PER_S)
-    loads, residual = steady_at(inputs["induced_velocity"][0], case)
+    loads, residual = solved_at(static.solver, inputs["induced_velocity"][0], case)
     return {**loads_outputs(loads, case.state, inputs), "residual": residual[None]}
 
 
@@ -200,7 +291,11 @@ def loads_outputs(loads: RotorLoads | TiltedLoads, state: RotorState, inputs: Ar
         Outputs by name, and the rotation speed.
     """
     numbers = coefficients(loads.thrust, loads.torque, state, inputs["diameter"][0])
+    hub = {}
+    if isinstance(loads, TiltedLoads):
+        hub = {"hub_force": loads.hub_force, "hub_moment": loads.hub_moment}
     return {
+        **hub,
         "rpm": jnp.asarray(state.rotation_speed / RAD_PER_S)[None],
         "thrust": loads.thrust[None],
         "torque": loads.torque[None],

@@ -126,7 +126,10 @@ class BroadbandComp(NodesComp):
             self.add_point_output(quantity.variable, shape=(n_observers,), desc=quantity.meaning)
         stations = propeller.r_over_R
         self.function = _broadband
-        self.static = int(propeller.n_blades), SelfNoiseModel(trip=self.options["trip"])
+        self.static = (
+            int(propeller.n_blades),
+            SelfNoiseModel(trip=self.options["trip"], tip=propeller.tip or "rounded"),
+        )
         self.constants = blade, strip_interpolation(stations, ns)
         axes: tuple[Axis, ...] = ("observer", [f"{frequency:g} Hz" for frequency in BANDS_HZ])
         self.axes = dict.fromkeys(self.output_shapes(), axes)

@@ -9,6 +9,7 @@ import openmdao.api as om
 
 from propmdao.aerodynamics.sections.polars.family import SectionPolars
 from propmdao.aerodynamics.sections.polars.propeller_polars import polars_for
+from propmdao.aerodynamics.solutions.period.flow import azimuths_for
 from propmdao.components.acoustics_comp import AcousticsComp
 from propmdao.components.aerodynamics_comp import AerodynamicsComp, n_loads
 from propmdao.components.bases.nodes_comp import declare_num_nodes
@@ -25,7 +26,7 @@ from propmdao.components.inputs.model_options import (
     model_of,
 )
 from propmdao.components.inputs.noise_inputs import declare_observers
-from propmdao.components.inputs.rotor_inputs import declare_polars
+from propmdao.components.inputs.rotor_inputs import declare_polars, declare_tilted
 from propmdao.components.inputs.rpm_bounds import declare_bounds
 from propmdao.components.rotation_speed_comp import RotationSpeedComp
 from propmdao.components.trimmed_aerodynamics_comp import TrimmedAerodynamicsComp
@@ -43,12 +44,16 @@ class PropellerGroup(om.Group):
     Every variable is promoted under its name in the components, which describe shapes and units.
     With `num_nodes` everything but the blade and the observers has a leading axis of that many
     operating points. Exactly 0 N required, or 0 rpm, is a propeller that stands still: no loads,
-    silence (-200 dB).
+    silence (-200 dB). With `tilted` the shaft may stand at an angle to the flight: results are
+    means over the turn, and the tones are those of loads that change around it.
 
     Inputs
     ------
     speed : float
-        Axial flight speed, 0 is hover, ``m/s``.
+        Flight speed, 0 is hover, ``m/s``.
+    incidence : float
+        Angle between the shaft and the direction of flight, 0 is axial flight, 90 edgewise,
+        ``deg``, with `tilted`.
     density : float
         Density of the air, ``kg/m**3``.
     sound_speed : float
@@ -58,7 +63,8 @@ class PropellerGroup(om.Group):
     rpm : float
         Rotation speed, ``rpm``, with `trim` "rpm".
     observer_position : (n_observers, 3) array
-        Positions from the rotor centre, +z toward thrust, flying along, ``m``.
+        Positions from the rotor centre, +z toward thrust, flight in the plane of +z and +x,
+        flying along, ``m``.
     diameter : float
         Diameter from tip to tip, initially the propeller's, ``m``; the distributions are over its
         half and grow along.
@@ -76,6 +82,10 @@ design_lift_coefficient : (n_stations,) arrays
     thrust, torque, shaft_power, efficiency, figure_of_merit, J, CT, CQ, CP : float
         Thrust, torque and power of all blades, ``N``, ``N*m``, ``W``, and the coefficients that
         `AerodynamicsComp` defines.
+    hub_force, hub_moment : (3,) arrays
+        Mean force and moment of all blades on the hub, about the rotor's centre, in axes that do
+        not turn: +z is the shaft, flight is in the plane of +z and +x, ``N``, ``N*m``, with
+        `tilted`.
     spl_bpf_db, oaspl_db, oaspl_thickness_db, oaspl_loading_db, oaspl_dba : (n_observers,) arrays
         Levels of the tones, dB re 20 uPa, whether there is broadband noise or not.
     oaspl_broadband_db, oaspl_broadband_dba, oaspl_total_db, oaspl_total_dba : (n_observers,) arrays
@@ -96,8 +106,12 @@ design_lift_coefficient : (n_stations,) arrays
     observers : (n_observers, 3) array or None
         Initial `observer_position` [m]; `propmdao.arc` makes positions. None (default): thrust and
         power alone, neither loads nor noise are outputs, and the derivatives of missions are cheap.
+    tilted : bool
+        Flight at an incidence, some hundred times as long as the steady lattice of axial flight,
+        which is the default. All nodes are solved so, hover as well; broadband noise and the trim
+        "two_point" are of axial flight alone.
     fidelity : Fidelity
-        Numbers of panels, wake nodes and harmonics.
+        Numbers of panels, wake nodes, azimuths and harmonics.
     trim : str
         ``"thrust"``: the rotation speed follows from `thrust_required`; ``"rpm"``: it is given.
     rpm_bounds : (float, float) or None
@@ -143,7 +157,8 @@ design_lift_coefficient : (n_stations,) arrays
     ValueError
         If `observers` are no positions, `rpm_bounds` are not positive and rising, control points do
         not fit the blade, or `broadband` is asked for without observers, `trip` without
-        `broadband`, a transition in inviscid flow or beside `polars`.
+        `broadband`, a transition in inviscid flow or beside `polars`, or `tilted` with what is of
+        axial flight alone.
     om.AnalysisError
         If a component has no result; with `num_nodes` the message has the node.
     """
@@ -158,6 +173,7 @@ design_lift_coefficient : (n_stations,) arrays
             desc="the described propeller, its name in the catalogue or its file",
         )
         declare_observers(self.options, optional=True)
+        declare_tilted(self.options)
         declare_model(self.options)
         declare_polars(self.options)
         declare("trim", "thrust", values=TRIMS, desc="input that the rotation speed follows")
@@ -169,10 +185,12 @@ design_lift_coefficient : (n_stations,) arrays
     def setup(self) -> None:
         options = self.options
         propeller = options["propeller"]
-        model = model_of(options).completed(propeller.transition)
+        model = model_of(options).completed(propeller.transition, propeller.tip)
         is_heard = options["observers"] is not None
         if model.noise.broadband is not None and not is_heard:
             raise ValueError("broadband noise is heard at observers; there are none")
+        if options["tilted"]:
+            self._require_modelled(model)
         polars = None
         if model.loads.viscous:
             polars = options["polars"]
@@ -187,6 +205,19 @@ design_lift_coefficient : (n_stations,) arrays
         self._add_loads(propeller, polars)
         if is_heard:
             self._add_noise(propeller, model)
+
+    def _require_modelled(self, model: Model) -> None:
+        """Refuse what is not modelled at an incidence."""
+        for what, asked in (
+            ("broadband noise", model.noise.broadband is not None),
+            ('trim_method "two_point"', self._follows_thrust("two_point")),
+        ):
+            if asked:
+                raise ValueError(f"tilted must be False for {what}, known in axial flight alone")
+
+    def _follows_thrust(self, method: str) -> bool:
+        """Whether the rotation speed follows from the thrust by a method."""
+        return bool(self.options["trim"] == "thrust" and self.options["trim_method"] == method)
 
     def _add_geometry(self, propeller: Propeller, polars: SectionPolars | None) -> None:
         """Splines of the design distributions, and the meshes that they shape."""
@@ -218,22 +249,30 @@ design_lift_coefficient : (n_stations,) arrays
             **{name: options[name] for name in ("fidelity", "stall_delay", "wake")},
         }
         bounds = {"rpm_bounds": options["rpm_bounds"]}
-        loads = options["observers"] is not None  # they are the sources of noise
-        if options["trim"] == "rpm":
-            aerodynamics = AerodynamicsComp(**rotor, loads=loads)
-        elif options["trim_method"] == "solve":
-            aerodynamics = TrimmedAerodynamicsComp(**rotor, **bounds, loads=loads)
-        else:
+        solved = {
+            **rotor,
+            "tilted": options["tilted"],
+            "loads": options["observers"] is not None,  # they are the sources of noise
+        }
+        if self._follows_thrust("two_point"):
             speed = RotationSpeedComp(**rotor, **bounds)
             self.add_subsystem("rotation_speed", speed, promotes=["*"])
-            aerodynamics = AerodynamicsComp(**rotor, loads=loads)
+        if self._follows_thrust("solve"):
+            aerodynamics = TrimmedAerodynamicsComp(**solved, **bounds)
+        else:
+            aerodynamics = AerodynamicsComp(**solved)
         self.add_subsystem("aerodynamics", aerodynamics, promotes=["*"])
 
     def _add_noise(self, propeller: Propeller, model: Model) -> None:
         """Tones, and broadband noise where it is asked for."""
         shared = {name: self.options[name] for name in ("num_nodes", "observers", "fidelity")}
+        fidelity, n_blades = model.fidelity, int(propeller.n_blades)
+        tilted = self.options["tilted"]
         tones = AcousticsComp(
-            n_blades=int(propeller.n_blades), n_loads=n_loads(model.fidelity), **shared
+            n_blades=n_blades,
+            n_loads=n_loads(fidelity, tilted),
+            n_azimuths=azimuths_for(fidelity.n_azimuths, n_blades) if tilted else None,
+            **shared,
         )
         self.add_subsystem("acoustics", tones, promotes=["*"])
         if model.noise.broadband is None:

@@ -11,6 +11,7 @@ from propmdao.aerodynamics.trim import rotation_speed_by_interpolation
 from propmdao.components.bases.array_function import Arrays
 from propmdao.components.bases.nodes_comp import NodesComp
 from propmdao.components.inputs.rotor_inputs import (
+    RotorKind,
     add_rotor_inputs,
     check_rotor_inputs,
     declare_rotor,
@@ -39,7 +40,7 @@ class RotationSpeedComp(NodesComp):
     thrust_required : float
         Thrust of all blades, ``N``; exactly 0 means a propeller that stands still.
 
-    The other inputs are those of `AerodynamicsComp` without `rpm`.
+    The other inputs are those of `AerodynamicsComp` without `rpm` and `incidence`.
 
     Outputs
     -------
@@ -52,7 +53,7 @@ class RotationSpeedComp(NodesComp):
         The two rotation speeds at which the thrust is computed [rpm]; None (default): the bounds
         of `TrimmedAerodynamicsComp`, which are too far apart for this rule.
 
-    The other options are those of `AerodynamicsComp` without `loads`.
+    The other options are those of `AerodynamicsComp` without `loads` and `tilted`.
 
     Raises
     ------
@@ -70,11 +71,12 @@ class RotationSpeedComp(NodesComp):
         declare_bounds(self.options)
 
     def setup(self) -> None:
-        self.constants = add_rotor_inputs(self), fixed_bounds(self.options)
+        wake = self.options["fidelity"].wake
+        self.constants = add_rotor_inputs(self, wake), fixed_bounds(self.options)
         self.add_point_input("thrust_required", val=1.0, units="N")
         self.add_point_output("rpm", val=4000.0, units="rpm")
         self.function = _interpolated
-        self.static = self.options["n_blades"]
+        self.static = RotorKind(self.options["n_blades"])
 
     def at_rest(self, inputs: Arrays) -> bool:
         return not inputs["thrust_required"].any()
@@ -94,7 +96,7 @@ class RotationSpeedComp(NodesComp):
             )
 
 
-def _interpolated(inputs: Arrays, constants: Any, static: int) -> Arrays:
+def _interpolated(inputs: Arrays, constants: Any, static: RotorKind) -> Arrays:
     rotor_constants, fixed = constants
     bounds = bounds_at(inputs, fixed)
     case = rotor_at(inputs, rotor_constants, static, bounds.low)

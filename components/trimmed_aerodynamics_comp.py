@@ -6,12 +6,11 @@ from typing import Any
 
 import openmdao.api as om
 
-from propmdao.aerodynamics.solutions import axial
 from propmdao.aerodynamics.solutions.known_root import trimmed_at
 from propmdao.aerodynamics.trim import TrimError, require_reached, solve_for_thrust
 from propmdao.components.aerodynamics_comp import AerodynamicsComp, loads_outputs
 from propmdao.components.bases.array_function import Arrays
-from propmdao.components.inputs.rotor_inputs import RotorConstants, rotor_at
+from propmdao.components.inputs.rotor_inputs import RotorConstants, RotorKind, rotor_at
 from propmdao.components.inputs.rpm_bounds import (
     bounds_at,
     checked_bounds_at,
@@ -22,7 +21,7 @@ from propmdao.records.units import RAD_PER_S
 
 
 class TrimmedAerodynamicsComp(AerodynamicsComp):
-    """Steady vortex lattice at the rotation speed that gives the thrust required.
+    """Vortex lattice at the rotation speed that gives the thrust required, at an incidence too.
 
     Converged from any blade inside the bounds. Rotation speed and loads come from one search, and
     their derivatives from one linearisation of the lattice.
@@ -52,10 +51,10 @@ class TrimmedAerodynamicsComp(AerodynamicsComp):
     Raises
     ------
     om.AnalysisError
-        If an input or a result is not finite, flight backwards or too fast to trim, diameter or a
-        property of the air not positive, the thrust out of reach between the bounds, or the
-        solution does not converge; the message has the reason, the thrust at both bounds and, with
-        `num_nodes`, the node.
+        If an input or a result is not finite, flight backwards or too fast to trim, the incidence
+        beyond its range, diameter or a property of the air not positive, the thrust out of reach
+        between the bounds, or the solution does not converge; the message has the reason, the
+        thrust at both bounds and, with `num_nodes`, the node.
     ValueError
         If `rpm_bounds` are not positive and rising.
     """
@@ -66,10 +65,12 @@ class TrimmedAerodynamicsComp(AerodynamicsComp):
 
     def setup(self) -> None:
         super().setup()
-        self.search_constants = self.constants, fixed_bounds(self.options)
         self.search, self.function = _trimmed, _at_root
         self.state, self.residual = "rotation_speed", "missing_thrust"
         self.state_outputs = {"rpm": 1.0 / RAD_PER_S}
+
+    def _search_constants(self, constants: RotorConstants) -> Any:
+        return constants, fixed_bounds(self.options)
 
     def _add_rotation_speed(self) -> None:
         self.add_point_input("thrust_required", val=1.0, units="N")
@@ -80,20 +81,20 @@ class TrimmedAerodynamicsComp(AerodynamicsComp):
 
     def check(self, inputs: Any, values: Any) -> None:
         bounds = checked_bounds_at(inputs, fixed_bounds(self.options))
-        case = rotor_at(inputs, self.constants, self.options["n_blades"], bounds.low)
+        case = rotor_at(inputs, self.constants_of(values), self.static, bounds.low)
         thrust = inputs["thrust_required"][0]
         try:
-            require_reached(values["trimmed"], axial, case, thrust, bounds)
+            require_reached(values["trimmed"], self.static.solver, case, thrust, bounds)
         except TrimError as error:
             raise om.AnalysisError(str(error)) from error
         super().check(inputs, values)
 
 
-def _trimmed(inputs: Arrays, constants: Any, static: int) -> Arrays:
+def _trimmed(inputs: Arrays, constants: Any, static: RotorKind) -> Arrays:
     rotor_constants, fixed = constants
     bounds = bounds_at(inputs, fixed)
     case = rotor_at(inputs, rotor_constants, static, bounds.low)
-    trimmed = solve_for_thrust(axial, case, inputs["thrust_required"][0], bounds)
+    trimmed = solve_for_thrust(static.solver, case, inputs["thrust_required"][0], bounds)
     state = case.state.turning(trimmed.rotation_speed)
     return {
         **loads_outputs(trimmed.loads, state, inputs),
@@ -103,8 +104,8 @@ def _trimmed(inputs: Arrays, constants: Any, static: int) -> Arrays:
     }
 
 
-def _at_root(inputs: Arrays, constants: RotorConstants, static: int) -> Arrays:
+def _at_root(inputs: Arrays, constants: RotorConstants, static: RotorKind) -> Arrays:
     omega = inputs["rotation_speed"][0]
     case = rotor_at(inputs, constants, static, omega)
-    loads, missing = trimmed_at(omega, case, inputs["thrust_required"][0])
+    loads, missing = trimmed_at(static.solver, omega, case, inputs["thrust_required"][0])
     return {**loads_outputs(loads, case.state, inputs), "missing_thrust": missing[None]}

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Hashable, Mapping, Sequence
+from collections.abc import Callable, Hashable, Iterable, Mapping, Sequence
 from operator import itemgetter
 from typing import Any
 
@@ -105,13 +105,8 @@ class JaxComponent(om.ExplicitComponent):
     ) -> list[Arrays | om.AnalysisError]:
         if not points:
             return []
-        batch = [*points, *[points[-1]] * (batch_size - len(points))]
-        inputs = {name: np.stack([point[name] for point in batch]) for name in points[0]}
-        function, constants = self.evaluated()
-        values = jax.device_get(evaluate_all(function, self.static, constants, inputs))
         results: list[Arrays | om.AnalysisError] = []
-        for place, point in enumerate(points):
-            here = jax.tree.map(itemgetter(place), values)
+        for point, here in zip(points, self.found_at_all(points, batch_size), strict=True):
             outputs = {name: here[name] for name in self.output_shapes()}
             results.append(_error(self._check_results, point, here) or outputs)
         return results
@@ -123,6 +118,45 @@ class JaxComponent(om.ExplicitComponent):
     def evaluated(self) -> tuple[Function, Any]:
         """Function that `compute` calls, and its constants; a `RootComponent` searches first."""
         return self.function, self.constants
+
+    def found_at(self, inputs: Arrays) -> Mapping[str, Any]:
+        """Evaluate the function at inputs that have been checked.
+
+        Parameters
+        ----------
+        inputs : dict of arrays
+            Inputs by name.
+
+        Returns
+        -------
+        mapping
+            What the function returns.
+        """
+        function, constants = self.evaluated()
+        return evaluate(function, self.static, constants, inputs)
+
+    def found_at_all(
+        self, points: Sequence[Arrays], batch_size: int
+    ) -> Iterable[Mapping[str, Any]]:
+        """Evaluate the function at several points at once.
+
+        Parameters
+        ----------
+        points : sequence of dicts of arrays
+            Inputs by name that have been checked, at one point at least.
+        batch_size : int
+            Number of points that the code is compiled for; there are no more than these.
+
+        Returns
+        -------
+        iterable of mappings
+            What the function returns at each point.
+        """
+        batch = [*points, *[points[-1]] * (batch_size - len(points))]
+        inputs = {name: np.stack([point[name] for point in batch]) for name in points[0]}
+        function, constants = self.evaluated()
+        values = jax.device_get(evaluate_all(function, self.static, constants, inputs))
+        return (jax.tree.map(itemgetter(place), values) for place in range(len(points)))
 
     def n_points(self) -> int:
         """Number of points that the component works at before it comes back to the first.
@@ -164,8 +198,7 @@ class JaxComponent(om.ExplicitComponent):
             When `check_inputs` or `check` raises it, or an output is not finite.
         """
         self.check_inputs(inputs)
-        function, constants = self.evaluated()
-        values = evaluate(function, self.static, constants, inputs)
+        values = self.found_at(inputs)
         self._check_results(inputs, values)
         return values
 

@@ -44,8 +44,8 @@ class NodesComp(JaxComponent):
     Its ``function`` knows of one point only. The points are gone through one by one: the compiled
     code is that of one point, whatever their number, so is the memory of an evaluation, and a point
     that no seed touches is not differentiated. A point that is differentiated keeps its
-    linearisation until its inputs change; where all its outputs are scalars, their gradients alone:
-    missions ask for many products at the same points.
+    linearisation until its inputs change; where all its outputs are scalars and vectors in space,
+    their gradients alone: missions ask for many products at the same points.
 
     Options
     -------
@@ -196,8 +196,8 @@ class NodesComp(JaxComponent):
 
     def _derivatives_to_keep(self, inputs: Arrays) -> Derivatives:
         derivatives = super()._derivatives_to_keep(inputs)
-        if all(shape == (1,) for shape in self._output_shapes.values()):
-            return _Gradients(derivatives, tuple(self._output_shapes))
+        if all(shape in ((1,), (3,)) for shape in self._output_shapes.values()):
+            return _Gradients(derivatives, self._output_shapes)
         return derivatives
 
     def _points(self, inputs: Any) -> Iterator[tuple[int, Arrays]]:
@@ -218,12 +218,17 @@ class NodesComp(JaxComponent):
 
 
 class _Gradients:
-    """Derivatives of scalars as gradients, one product back for each."""
+    """Derivatives of few numbers as gradients, one product back for each."""
 
-    def __init__(self, derivatives: Derivatives, scalars: tuple[str, ...]) -> None:
-        zero = {name: np.zeros(1) for name in scalars}
-        rows = [derivatives.reverse({**zero, scalar: np.ones(1)}) for scalar in scalars]
-        self._scalars = scalars
+    def __init__(self, derivatives: Derivatives, shapes: Shapes) -> None:
+        zero = {name: np.zeros(shape) for name, shape in shapes.items()}
+        rows = [
+            derivatives.reverse({**zero, name: unit})
+            for name, (size,) in shapes.items()
+            for unit in np.eye(size)
+        ]
+        self._names = tuple(shapes)
+        self._ends = np.cumsum([size for (size,) in shapes.values()])
         self._gradients = {
             name: np.stack([np.asarray(row[name]) for row in rows]) for name in rows[0]
         }
@@ -235,10 +240,11 @@ class _Gradients:
             for name, seed in seeds.items()
             if seed.any()
         )
-        return dict(zip(self._scalars, np.atleast_1d(products), strict=True))
+        parts = np.split(np.atleast_1d(products), self._ends[:-1])
+        return dict(zip(self._names, parts, strict=True))
 
     def reverse(self, seeds: Arrays) -> Mapping[str, Any]:
-        weights = np.concatenate([seeds[scalar] for scalar in self._scalars])
+        weights = np.concatenate([seeds[name] for name in self._names])
         return {
             name: np.tensordot(weights, gradients, axes=1)
             for name, gradients in self._gradients.items()

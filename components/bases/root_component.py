@@ -32,6 +32,8 @@ class RootComponent(JaxComponent):
     - ``search``: a function like ``function`` that finds the state: it takes the inputs alone, and
       returns the outputs, the state and whatever ``check`` needs;
     - ``search_constants``: its constants, those of ``function`` and whatever bounds the search.
+      Where `found_at` chooses among several, it returns those of ``function``, under the name
+      "constants", with what it has found.
 
     Derivatives are those of the implicit function: with the function linearised once at the root,
     whose gradient of the residual serves all products, no search is repeated or differentiated.
@@ -53,11 +55,27 @@ class RootComponent(JaxComponent):
     def values_at(self, inputs: Arrays) -> Mapping[str, Any]:
         return self._searched(inputs)  # which derivatives ask for again
 
+    def constants_of(self, solution: Mapping[str, Any]) -> Any:
+        """Constants of ``function`` that go with what was found.
+
+        Parameters
+        ----------
+        solution : mapping
+            What `found_at` returned.
+
+        Returns
+        -------
+        pytree
+            Constants with which the state is a root.
+        """
+        return solution.get("constants", self.constants)
+
     def derivatives_at(self, inputs: Arrays) -> Derivatives:
-        root = {**inputs, self.state: self._searched(inputs)[self.state]}
+        solution = self._searched(inputs)
+        root = {**inputs, self.state: solution[self.state]}
         shapes = self.output_shapes()
         derivatives = FunctionDerivatives(
-            self.function, self.static, self.constants, root, (*shapes, self.residual)
+            self.function, self.static, self.constants_of(solution), root, (*shapes, self.residual)
         )
         return _RootDerivatives(derivatives, shapes, self.state, self.residual, self.state_outputs)
 

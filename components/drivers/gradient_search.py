@@ -3,12 +3,24 @@
 from __future__ import annotations
 
 import os
+import sys
 import time
-from typing import NamedTuple
+from collections.abc import Callable
+from typing import Any, NamedTuple
 
+import numpy as np
 import openmdao.api as om
 
-from propmdao.components.drivers.search_history import SearchHistory, read_history
+from propmdao.components.drivers.search_history import (
+    SearchHistory,
+    Trial,
+    read_history,
+    trial_of,
+)
+
+#: Function that is told of every design: its number, counted from 1, the design, and the driver,
+#: whose model holds it.
+Watch = Callable[[int, Trial, om.ScipyOptimizeDriver], None]
 
 
 class Search(NamedTuple):
@@ -30,8 +42,36 @@ class Search(NamedTuple):
     compiling: float
 
 
+class _WatchedDriver(om.ScipyOptimizeDriver):
+    """SciPy's optimisers, which tell of every design."""
+
+    def __init__(self, watch: Watch | None, **options: Any) -> None:
+        super().__init__(**options)
+        self._watch = watch
+        self._n_told = 0
+
+    def record_iteration(self) -> None:
+        """Record a design, whether its analysis has failed or not, and tell of it."""
+        super().record_iteration()
+        if self._watch is None:
+            return
+        self._n_told += 1
+        failure = sys.exc_info()[1]
+        if failure is not None:
+            trial = Trial(np.nan, np.inf, str(failure))
+        else:
+            (objective,) = self.get_objective_values(driver_scaling=False).values()
+            values = self.get_constraint_values(driver_scaling=False)
+            trial = trial_of(float(np.ravel(objective)[0]), values, self._cons)
+        self._watch(self._n_told, trial, self)
+
+
 def run_slsqp(
-    prob: om.Problem, file: str | os.PathLike[str], tolerance: float = 1e-5, iterations: int = 100
+    prob: om.Problem,
+    file: str | os.PathLike[str],
+    tolerance: float = 1e-5,
+    iterations: int = 100,
+    watch: Watch | None = None,
 ) -> Search:
     """Search with SLSQP, and leave the optimum in the problem.
 
@@ -52,6 +92,9 @@ def run_slsqp(
     iterations : int
         Largest number of iterations, each of which costs one set of derivatives and mostly one
         analysis.
+    watch : callable, optional
+        Function that is told of every design when it has been analysed: its number, the `Trial`,
+        and the driver.
 
     Returns
     -------
@@ -64,8 +107,8 @@ def run_slsqp(
         When an analysis fails: SLSQP cannot do without a value. Bounds and constraints on the
         design variables should leave out what cannot be analysed.
     """
-    prob.driver = om.ScipyOptimizeDriver(
-        optimizer="SLSQP", tol=tolerance, maxiter=iterations, disp=False
+    prob.driver = _WatchedDriver(
+        watch, optimizer="SLSQP", tol=tolerance, maxiter=iterations, disp=False
     )
     prob.driver.add_recorder(om.SqliteRecorder(os.fspath(file), record_viewer_data=False))
     started = time.perf_counter()

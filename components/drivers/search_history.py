@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import dataclasses
 import os
-from typing import NamedTuple
+from collections.abc import Mapping
+from typing import Any, NamedTuple
 
 import numpy as np
 import openmdao.api as om
@@ -33,12 +34,48 @@ class SearchHistory:
     constraint: list[str]
 
 
-class _Trial(NamedTuple):
-    """One design of a `SearchHistory`."""
+class Trial(NamedTuple):
+    """One design of a `SearchHistory`.
+
+    Attributes
+    ----------
+    objective : float
+        Objective in its declared units; nan where the analysis failed.
+    violation : float
+        Largest violation of a constraint in driver scaling; infinite where the analysis failed.
+    constraint : str
+        Name of that constraint, or the reason of the failure.
+    """
 
     objective: float
     violation: float
     constraint: str
+
+
+def trial_of(objective: float, values: Mapping[str, Array], metas: Mapping[str, Any]) -> Trial:
+    """Judge a design that has been analysed.
+
+    Parameters
+    ----------
+    objective : float
+        Objective in its declared units.
+    values : mapping of str to array
+        Constraints by name, in their declared units.
+    metas : mapping of str to dict
+        OpenMDAO's metadata of the constraints.
+
+    Returns
+    -------
+    Trial
+        The design.
+    """
+    by_name = {
+        name: float(constraint_violations(values[name].ravel(), meta, 0.0).max())
+        for name, meta in metas.items()
+    }
+    worst = max(by_name, key=by_name.__getitem__, default="")
+    violation = by_name.get(worst, 0.0)
+    return Trial(objective, violation, worst if violation > 0.0 else "")
 
 
 def read_history(prob: om.Problem, file: str | os.PathLike[str]) -> SearchHistory:
@@ -62,19 +99,14 @@ def read_history(prob: om.Problem, file: str | os.PathLike[str]) -> SearchHistor
     trials = []
     for case in om.CaseReader(os.fspath(file)).get_cases("driver"):
         if not case.success:
-            trials.append(_Trial(np.nan, np.inf, case.msg))
+            trials.append(Trial(np.nan, np.inf, case.msg))
             continue
-        by_name = {
-            name: float(constraint_violations(
-                case.get_val(meta["name"], units=meta["units"]).ravel(), meta, 0.0
-            ).max())
+        values = {
+            name: case.get_val(meta["name"], units=meta["units"])
             for name, meta in constraints.items()
-        }  # fmt: skip
-        worst = max(by_name, key=by_name.__getitem__)
+        }
         value = case.get_val(objective["name"], units=objective["units"])
-        violation = by_name[worst]
-        violated = worst if violation > 0.0 else ""
-        trials.append(_Trial(float(value.ravel()[0]), violation, violated))
+        trials.append(trial_of(float(value.ravel()[0]), values, constraints))
     return SearchHistory(
         objective=np.array([trial.objective for trial in trials]),
         violation=np.array([trial.violation for trial in trials]),

@@ -90,8 +90,8 @@ def check_rotor(inputs: Arrays, nodes: str) -> None:
     Raises
     ------
     om.AnalysisError
-        If rotation or flight is backwards, a property of the air not positive, the blade tip not
-        slower than sound, or an observer not outside the rotor.
+        If rotation or flight is backwards, the incidence beyond its range, a property of the air
+        not positive, the blade tip not slower than sound, or an observer not outside the rotor.
     """
     check_point_inputs(inputs)
     x, y, _ = np.moveaxis(np.asarray(inputs[nodes]), -1, 0)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
+import jax.numpy as jnp
 import openmdao.api as om
 
 from propmdao.components.bases.array_function import Arrays
@@ -46,12 +47,13 @@ def check_point_inputs(inputs: Arrays) -> None:
     Raises
     ------
     om.AnalysisError
-        If rotation or flight is backwards, or a property of the air not positive.
+        If rotation or flight is backwards, the incidence beyond its range, or a property of the air
+        not positive.
     """
     try:
-        for name in ("rpm", "speed", *AIR_INPUTS):
-            if name in inputs:
-                require_asked(name, inputs[name].item())
+        for name in ("rpm", "speed", "incidence_deg", *AIR_INPUTS):
+            if (variable := ASKED[name].variable) in inputs:
+                require_asked(name, inputs[variable].item())
     except ValueError as error:
         raise om.AnalysisError(str(error)) from error
 
@@ -62,8 +64,8 @@ def state_at(inputs: Arrays, rotation_speed: Scalar) -> RotorState:
     Parameters
     ----------
     inputs : dict of arrays
-        Inputs of one point by name: the speed, and those properties of the air that the component
-        has as inputs; the other ones are standard.
+        Inputs of one point by name: the speed, the incidence where the component has it, and those
+        properties of the air that it has; the other ones are standard.
     rotation_speed : scalar
         Rotation speed [rad/s].
 
@@ -73,4 +75,5 @@ def state_at(inputs: Arrays, rotation_speed: Scalar) -> RotorState:
         State for the solutions and the sources of sound.
     """
     air = {name: inputs[name][0] for name in AIR_INPUTS if name in inputs}
-    return RotorState(rotation_speed, inputs["speed"][0], Air(**air))
+    incidence = jnp.radians(inputs["incidence"][0]) if "incidence" in inputs else 0.0
+    return RotorState(rotation_speed, inputs["speed"][0], Air(**air), incidence)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
-from typing import Any
+from typing import Any, NamedTuple
 
 import jax.numpy as jnp
 import numpy as np
@@ -14,6 +14,7 @@ from propmdao.aerodynamics.rotor_geometry import RotorGeometry
 from propmdao.aerodynamics.sections.laws import ViscousSections
 from propmdao.aerodynamics.sections.polars.family import SectionPolars
 from propmdao.aerodynamics.sections.polars.table import PolarTable
+from propmdao.aerodynamics.solutions import axial, periodic
 from propmdao.aerodynamics.solutions.case import RotorCase
 from propmdao.aerodynamics.wakes.helical import WakeTransport, wake_transport
 from propmdao.components.bases.array_function import Arrays
@@ -25,6 +26,28 @@ from propmdao.components.inputs.point_inputs import (
     state_at,
 )
 from propmdao.records.pytrees import Scalar, record
+from propmdao.records.wake_law import WakeGrid
+
+
+class RotorKind(NamedTuple):
+    """What the code of a rotor is compiled for.
+
+    Attributes
+    ----------
+    n_blades : int
+        Number of blades.
+    n_azimuths : int or None
+        Azimuths of a turn in flight at an incidence, a multiple of the blades; None in axial
+        flight.
+    """
+
+    n_blades: int
+    n_azimuths: int | None = None
+
+    @property
+    def solver(self) -> Any:
+        """Module that solves for the loads, a `propmdao.aerodynamics.trim.Solver`."""
+        return axial if self.n_azimuths is None else periodic
 
 
 @record
@@ -60,6 +83,19 @@ def declare_rotor(options: OptionsDictionary) -> None:
     declare_model(options, ["fidelity", "stall_delay", "wake"])
 
 
+def declare_tilted(options: OptionsDictionary) -> None:
+    """Declare whether the shaft may stand at an angle to the flight.
+
+    Parameters
+    ----------
+    options : OptionsDictionary
+        Options of a component or group.
+    """
+    options.declare(
+        "tilted", False, types=bool, desc="flight at an incidence, with loads that change around"
+    )
+
+
 def declare_polars(options: OptionsDictionary) -> None:
     """Declare the polars of the sections.
 
@@ -73,13 +109,15 @@ def declare_polars(options: OptionsDictionary) -> None:
     )
 
 
-def add_rotor_inputs(component: NodesComp) -> RotorConstants:
-    """Declare the inputs that `rotor_at` reads.
+def add_rotor_inputs(component: NodesComp, grid: WakeGrid) -> RotorConstants:
+    """Declare the inputs that `rotor_at` reads, but the incidence.
 
     Parameters
     ----------
     component : NodesComp
         Component in its ``setup``.
+    grid : WakeGrid
+        Nodes of the wake.
 
     Returns
     -------
@@ -92,7 +130,7 @@ def add_rotor_inputs(component: NodesComp) -> RotorConstants:
     component.add_input("lattice_nodes", shape=nodes, units="m", tags=STATIC)
     component.add_input("diameter", units="m", tags=STATIC)
     add_point_inputs(component, ["speed", "density"])
-    grid = None
+    table = None
     if polars is not None:
         of_section = polars.values.shape[3:]
         shape = (fidelity.n_spanwise, *of_section)
@@ -101,13 +139,14 @@ def add_rotor_inputs(component: NodesComp) -> RotorConstants:
             "section_thickness_over_chord", np.zeros(fidelity.n_spanwise), tags=STATIC
         )
         add_point_inputs(component, ["sound_speed"])
-        grid = PolarTable(polars.alpha, polars.log_re, jnp.zeros((0, *of_section)), polars.mach)
-    wake = wake_transport(options["wake"], fidelity.wake)
-    return RotorConstants(wake, grid, float(options["stall_delay"]))
+        table = PolarTable(polars.alpha, polars.log_re, jnp.zeros((0, *of_section)), polars.mach)
+    return RotorConstants(
+        wake_transport(options["wake"], grid), table, float(options["stall_delay"])
+    )
 
 
 def rotor_at(
-    inputs: Arrays, constants: RotorConstants, n_blades: int, rotation_speed: Scalar
+    inputs: Arrays, constants: RotorConstants, kind: RotorKind, rotation_speed: Scalar
 ) -> RotorCase:
     """Rotor that the solutions of the lattice take.
 
@@ -117,8 +156,8 @@ def rotor_at(
         Inputs of one point by name.
     constants : RotorConstants
         Properties that `add_rotor_inputs` returned.
-    n_blades : int
-        Number of blades.
+    kind : RotorKind
+        Number of blades, and of azimuths.
     rotation_speed : scalar
         Rotation speed [rad/s].
 
@@ -135,8 +174,12 @@ def rotor_at(
             thickness=inputs["section_thickness_over_chord"],
         )
         sections = ViscousSections(table, constants.stall_delay)
-    rotor = RotorGeometry(inputs["lattice_nodes"], 0.5 * inputs["diameter"][0], n_blades)
-    return RotorCase(rotor, state_at(inputs, rotation_speed), sections, constants.wake)
+    rotor = RotorGeometry(inputs["lattice_nodes"], 0.5 * inputs["diameter"][0], kind.n_blades)
+    state = state_at(inputs, rotation_speed)
+    case = RotorCase(rotor, state, sections, constants.wake)
+    if kind.n_azimuths is None:
+        return case
+    return dataclasses.replace(case, n_azimuths=kind.n_azimuths)
 
 
 def check_rotor_inputs(inputs: Arrays) -> None:
@@ -150,8 +193,8 @@ def check_rotor_inputs(inputs: Arrays) -> None:
     Raises
     ------
     om.AnalysisError
-        If the diameter is not positive, rotation or flight backwards, or a property of the air
-        not positive.
+        If the diameter is not positive, rotation or flight backwards, the incidence beyond its
+        range, or a property of the air not positive.
     """
     require_diameter(inputs)
     check_point_inputs(inputs)

@@ -38,8 +38,8 @@ class Tones:
     Attributes
     ----------
     frequency_hz : (n_harmonics,) array
-        Frequencies f_m = m B |Omega| / 2 pi [Hz]; those of a sum of rotors are sorted, and are not
-        multiples of the first.
+        Frequencies ``f_m = m B |Omega| / 2 pi`` [Hz]; those of a sum of rotors are sorted, and are
+        not multiples of the first.
     parts : dict of (n_observers, n_harmonics) complex arrays
         Amplitudes P_m [Pa] by the name of their source: ``"thickness"``, ``"loading"``.
     """

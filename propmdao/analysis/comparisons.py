@@ -3,12 +3,16 @@
 from __future__ import annotations
 
 import csv
+import math
 import os
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from typing import Any
 
+import numpy as np
 from rich import box
 from rich.table import Table
 
+from propmdao.acoustics.levels.decibels import energy_sum_db
 from propmdao.analysis.results import Analysis
 from propmdao.runtime.output_files import replacing
 from propmdao.runtime.terminal import plain_console
@@ -53,10 +57,95 @@ def at_observer(analysis: Analysis, observer: int = 0) -> dict[str, float]:
     return {key: value for key, value in values.items() if isinstance(value, float)}
 
 
+#: Rows of an operating point: label, key, format.
+OPERATION: tuple[Row, ...] = (
+    ("rotation speed, rpm", "rpm", ".1f"),
+    ("thrust, N", "thrust", ".4f"),
+    ("torque, N m", "torque", ".5f"),
+    ("shaft power, W", "shaft_power", ".3f"),
+    ("efficiency", "eta", ".4f"),
+    ("figure of merit", "figure_of_merit", ".4f"),
+    ("helical tip Mach number", "tip_mach", ".4f"),
+    ("CT", "CT", ".5f"),
+    ("CP", "CP", ".5f"),
+)
+#: Levels at an observer: label, key.
+_LEVELS = (
+    ("tone at blade passage, dB", "spl_bpf_db"),
+    ("thickness noise, dB", "oaspl_thickness_db"),
+    ("loading noise, dB", "oaspl_loading_db"),
+    ("tones, dB", "oaspl_db"),
+    ("tones, dBA", "oaspl_dba"),
+    ("broadband noise, dB", "oaspl_broadband_db"),
+    ("broadband noise, dBA", "oaspl_broadband_dba"),
+    ("total, dB", "oaspl_total_db"),
+    ("total, dBA", "oaspl_total_dba"),
+)
+
+
+def operation_and_levels(
+    result: Mapping[str, Any], observer: int = 0
+) -> tuple[list[Row], dict[str, Cell]]:
+    """Rows and numbers of a comparison: operating point, levels at an observer and over all.
+
+    Parameters
+    ----------
+    result : dict
+        With the keys of ``propmdao analyze --json``.
+    observer : int
+        Index of the observer.
+
+    Returns
+    -------
+    rows : list of (label, key, format)
+        Rows for `print_comparison`; levels only where there are observers, means over them (of
+        the mean square) only where there are several.
+    values : dict
+        Numbers by the keys of the rows.
+    """
+    values: dict[str, Cell] = {key: result[key] for _, key, _ in OPERATION if key in result}
+    air = result["point"]["air"]
+    tip_speed = math.pi * _diameter(result) * result["rpm"] / 60.0
+    values["tip_mach"] = math.hypot(tip_speed, result["speed"]) / air["sound_speed"]
+    # Efficiency is 0 in hover, the figure of merit no measure of flight.
+    left_out = "figure_of_merit" if result["speed"] else "eta"
+    rows = [row for row in OPERATION if row[1] != left_out]
+    observers = result["observers"]
+    if not observers:
+        return rows, values
+    place = observers[observer]
+    parts = {
+        f"observer {observer + 1}: {place['elevation_deg']:+.4g} deg, {place['radius']:.4g} m": (
+            "at",
+            place,
+        )
+    }
+    if len(observers) > 1:
+        mean = {
+            key: float(energy_sum_db(np.array([each[key] for each in observers])))
+            - 10.0 * math.log10(len(observers))
+            for _, key in _LEVELS
+            if key in place
+        }
+        parts[f"mean over {len(observers)} observers"] = ("mean", mean)
+    for title, (prefix, levels) in parts.items():
+        rows.append((title, "", ""))
+        for label, key in _LEVELS:
+            if key in levels:
+                rows.append((f"  {label}", f"{prefix} {key}", ".2f"))
+                values[f"{prefix} {key}"] = levels[key]
+    return rows, values
+
+
+def _diameter(result: Mapping[str, Any]) -> float:
+    """Diameter that was analysed: the changed one, where it was changed [m]."""
+    return float(result["change"]["diameter"] or result["propeller"]["diameter"])
+
+
 def print_comparison(
-    rows: Sequence[Row], columns: Mapping[str, Mapping[str, Cell]], file: str | os.PathLike[str]
+    rows: Sequence[Row], columns: Mapping[str, Mapping[str, Cell]], n_changes: int = 1
 ) -> None:
-    """Print columns of results with the change from the first to the second, and write them.
+    """Print columns of results with their change from the first.
 
     Parameters
     ----------
@@ -65,32 +154,72 @@ def print_comparison(
     columns : mapping of str to mapping
         Results by key, under their heading, two columns at least; a missing key leaves its cell
         empty.
-    file : path
-        CSV file with the same rows and columns, unrounded.
+    n_changes : int
+        Number of columns after the first that are followed by their change from it.
     """
-    first, second, *others = columns
-    headings = [first, second, "change", *others]
     # Tight, so that five columns and their labels fit a terminal of 80 characters.
     table = Table(box=box.SIMPLE_HEAD, padding=0, show_edge=False)
     table.add_column("", no_wrap=True)
-    for heading in headings:
+    for heading in _headings(columns, n_changes):
         table.add_column(heading, justify="right")
+    for label, form, cells in _cells(rows, columns, n_changes):
+        forms = [f"+z{form}" if is_change else form for _, is_change in cells]
+        table.add_row(
+            label, *(_format(cell, form) for (cell, _), form in zip(cells, forms, strict=True))
+        )
+    plain_console().print(table, highlight=False)
+
+
+def write_comparison(
+    rows: Sequence[Row],
+    columns: Mapping[str, Mapping[str, Cell]],
+    file: str | os.PathLike[str],
+    n_changes: int = 1,
+) -> None:
+    """Write what `print_comparison` prints to a CSV file, unrounded.
+
+    Parameters
+    ----------
+    rows, columns, n_changes
+        The same as there.
+    file : path
+        CSV file.
+
+    Raises
+    ------
+    OutputError
+        If the file cannot be written.
+    """
+    headings = [heading.replace("\n", " ") for heading in _headings(columns, n_changes)]
     with replacing(file) as whole, whole.open("w", newline="", encoding="utf-8") as stream:
         writer = csv.writer(stream)
-        writer.writerow(["", *(heading.replace("\n", " ") for heading in headings)])
-        for label, key, form in rows:
-            before, after, *rest = (columns[heading].get(key) for heading in columns)
-            change = None
-            if isinstance(before, float) and isinstance(after, float):
-                change = after - before
-            table.add_row(
-                label,
-                *(_format(cell, form) for cell in (before, after)),
-                _format(change, f"+{form}"),
-                *(_format(cell, form) for cell in rest),
-            )
-            writer.writerow([label, before, after, change, *rest])
-    plain_console().print(table, highlight=False)
+        writer.writerow(["", *headings])
+        for label, _, cells in _cells(rows, columns, n_changes):
+            writer.writerow([label, *(cell for cell, _ in cells)])
+
+
+def _headings(columns: Iterable[str], n_changes: int) -> list[str]:
+    """Headings of the columns, with those of the changes."""
+    first, *others = columns
+    headings = [first]
+    for number, name in enumerate(others):
+        headings += [name, "change"] if number < n_changes else [name]
+    return headings
+
+
+def _cells(
+    rows: Sequence[Row], columns: Mapping[str, Mapping[str, Cell]], n_changes: int
+) -> Iterator[tuple[str, str, list[tuple[Cell, bool]]]]:
+    """Label, format and cells of each row, and which of the cells are changes."""
+    for label, key, form in rows:
+        first, *others = (column.get(key) for column in columns.values())
+        cells = [(first, False)]
+        for number, value in enumerate(others):
+            cells.append((value, False))
+            if number < n_changes:
+                known = isinstance(first, float) and isinstance(value, float)
+                cells.append((value - first if known else None, True))  # type: ignore[operator]
+        yield label, form, cells
 
 
 def side_by_side(rows: Sequence[Row], columns: Mapping[str, Mapping[str, Cell]]) -> Rows:

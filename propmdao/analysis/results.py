@@ -99,7 +99,7 @@ class Analysis:
 
     @property
     def changed_propeller(self) -> Propeller:
-        """The blade that was analysed: the described one with its change, as far as it gives."""
+        """The blade that was analysed, the described one with its change, as far as it gives."""
         changed = self.change.applied_to(self.propeller)
         return changed if self.deflection is None else self.deflection.applied_to(changed)
 

@@ -34,7 +34,7 @@ def strip_flow(
     ----------
     strips : Strips
         Sections of blade 1.
-    relative_speed, lift_coefficient : (ns,) arrays
+    relative_speed, lift_coefficient : (ns,) or (n_azimuths, ns) arrays
         How they work: speed of the air over them [m/s], and lift.
     blade : Blade
         The blade that was solved, for the shape of its trailing edge.
@@ -72,8 +72,9 @@ def self_noise(
     state: RotorState,
     observers: ArrayLike,
     model: SelfNoiseModel = SelfNoiseModel(),  # noqa: B008 - frozen
+    bands_hz: ArrayLike = BANDS_HZ,
 ) -> SelfNoise:
-    """Self-noise in the bands `BANDS_HZ`.
+    """Self-noise in third octaves.
 
     Parameters
     ----------
@@ -87,10 +88,14 @@ def self_noise(
         Positions from the rotor centre, flying along [m].
     model : SelfNoiseModel
         Tripping of the boundary layers, planform of the tip.
+    bands_hz : (n_bands,) array
+        Mid-band frequencies as the observers hear them [Hz].
 
     Returns
     -------
     SelfNoise
         Mean squares of each mechanism, (n_observers, n_bands) [Pa^2].
     """
-    return rotor_self_noise(flow, n_blades, state, observers, BANDS_HZ, model=model)
+    speed = flow.section.speed
+    azimuths = {"n_azimuths": len(speed)} if speed.ndim == 2 else {}
+    return rotor_self_noise(flow, n_blades, state, observers, bands_hz, model=model, **azimuths)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import dataclasses
-import warnings
 from functools import partial
 from typing import Any, Unpack
 
@@ -28,6 +27,12 @@ from propmdao.aerodynamics.sections.polars.sources import polar_sources
 from propmdao.aerodynamics.sections.polars.table import warn_outside
 from propmdao.aerodynamics.solutions import axial, periodic
 from propmdao.aerodynamics.solutions.case import RotorCase
+from propmdao.aerodynamics.solutions.edgewise import (
+    edgewise_advance_ratio,
+    is_slow,
+    longer,
+    warn_if_fast,
+)
 from propmdao.aerodynamics.solutions.marching.marched_loads import Progress
 from propmdao.aerodynamics.solutions.result import RotorLoads, TiltedLoads
 from propmdao.aerodynamics.trim import Solver, rotation_bounds, trim
@@ -51,13 +56,6 @@ from propmdao.records.units import RAD_PER_S
 from propmdao.records.wake_law import WakeGrid
 from propmdao.runtime.compilation import compiled
 from propmdao.runtime.finite import require_finite
-
-_SLOW, _LONGER = 0.05, 1.5  # advance ratio below which the wake has so many times the turns
-_FAST = 0.3  # advance ratio beyond which results are doubtful
-
-
-class FastEdgewiseWarning(UserWarning):
-    """A rotor flies edgewise so fast that its retreating side stalls."""
 
 
 def analyze(
@@ -116,7 +114,7 @@ def analyze(
     """
     records = {"point": point, "change": change, "model": model, "listening": listening}
     request = Request.of(records, **asked)
-    model = request.model.completed(propeller.transition)
+    model = request.model.completed(propeller.transition, propeller.tip)
     request = dataclasses.replace(request, model=model)
     point, listening = request.point, request.listening
     changed = request.change.applied_to(propeller)
@@ -124,8 +122,11 @@ def analyze(
     require_outside_rotor(listening.observers, radius)
     if listening.surroundings.absorption:
         require_known_air(point.air)
-    _require_modelled(request)
-    paths = sound_paths(listening.observers, listening.surroundings)
+    if request.model.loads.unsteady is not None:
+        require_marchable(point, request.model)
+    if request.model.loads.elastic is not None:
+        point.require_axial("an elastic blade")
+    paths = sound_paths(listening.observers, listening.surroundings, point.incidence_deg)
 
     elastic = model.loads.elastic
     material = None if elastic is None else material_of(changed, elastic)
@@ -176,7 +177,6 @@ def analyze(
     sound = _tones(panels, loads, case.rotor.n_blades, state, points, fidelity.n_harmonics)
     noise = None
     if model.noise.broadband is not None:
-        assert isinstance(loads, RotorLoads)  # refused before
         states = loads.sections
         flow = strip_flow(
             loads.strips, states.relative_speed, states.lift_coefficient, blade, radii.strips
@@ -198,19 +198,6 @@ def analyze(
     return analysis
 
 
-def _require_modelled(request: Request) -> None:
-    """Refuse what is not modelled at an incidence, before the work."""
-    point, around = request.point, request.listening.surroundings
-    if request.model.loads.unsteady is not None:
-        require_marchable(point, request.model)
-    if request.model.noise.broadband is not None:
-        point.require_axial("broadband noise")
-    if request.model.loads.elastic is not None:
-        point.require_axial("an elastic blade")
-    if around != Surroundings():
-        point.require_axial("sound over the ground or through air that absorbs it")
-
-
 def _solve(solver: Solver, case: RotorCase, point: OperatingPoint) -> tuple[Any, RotorState]:
     """Loads at the operating point, and the state of the rotor there."""
     radius, speed = float(case.rotor.radius), float(point.speed)
@@ -219,45 +206,26 @@ def _solve(solver: Solver, case: RotorCase, point: OperatingPoint) -> tuple[Any,
         return loads, point.at(rotation_speed)
     assert point.rotation_speed is not None
     state = point.at(point.rotation_speed)
-    # The fastest a blade gets: at an incidence, on the advancing side.
-    edgewise, axial_speed = float(state.edgewise_speed), float(state.axial_speed)
-    advancing = point.rotation_speed + edgewise / radius
-    require_subsonic_tip(radius, RotorState(advancing, abs(axial_speed), state.air))
+    require_subsonic_tip(radius, state)
     return solver.solve(case.turning(point.rotation_speed)), state
 
 
 def _tilted(case: RotorCase, point: OperatingPoint, model: Model) -> tuple[TiltedLoads, RotorState]:
     """Loads at an incidence; in slow flight, where the wake stays near, with a longer one."""
-    grid = model.fidelity.period_wake
-    longer = dataclasses.replace(grid, turns=_LONGER * grid.turns)
+    grid, radius = model.fidelity.period_wake, float(case.rotor.radius)
 
     def solved(grid: WakeGrid) -> tuple[TiltedLoads, RotorState, float]:
         wake = wake_transport(model.loads.wake, grid)
         loads, state = _solve(periodic, dataclasses.replace(case, wake=wake), point)
-        return loads, state, _edgewise_advance_ratio(state, float(case.rotor.radius))
+        return loads, state, edgewise_advance_ratio(state, radius)
 
     known = point.rotation_speed
-    slow = known is not None and (
-        _edgewise_advance_ratio(point.at(known), float(case.rotor.radius)) < _SLOW
-    )
-    loads, state, ratio = solved(longer if slow else grid)
-    if ratio < _SLOW and not slow:
-        loads, state, ratio = solved(longer)
-    if ratio > _FAST:
-        warnings.warn(
-            f"advance ratio V sin(incidence) / (Omega R) {ratio:.3g} is above {_FAST:g}: the"
-            " retreating side stalls and meets the air from behind, and dynamic stall is not"
-            " modelled",
-            FastEdgewiseWarning,
-            stacklevel=3,
-        )
+    slow = known is not None and is_slow(edgewise_advance_ratio(point.at(known), radius))
+    loads, state, ratio = solved(longer(grid) if slow else grid)
+    if is_slow(ratio) and not slow:
+        loads, state, ratio = solved(longer(grid))
+    warn_if_fast(ratio, stacklevel=4)
     return loads, state
-
-
-def _edgewise_advance_ratio(state: RotorState, radius: float) -> float:
-    """V sin(incidence) / (Omega R), 0 for a rotor that does not turn."""
-    tip_speed = float(state.rotation_speed) * radius
-    return float(state.edgewise_speed) / tip_speed if tip_speed else 0.0
 
 
 def _tones(
@@ -272,8 +240,7 @@ def _tones(
     if isinstance(loads, RotorLoads):
         return tones(panels, loads.point_loads, n_blades, state, points, n_harmonics)
     rotor = Rotor(equally_spaced(n_blades), float(state.rotation_speed), panels, loads.point_loads)
-    velocity = float(state.edgewise_speed), 0.0, float(state.axial_speed)
-    return rotor_tones(rotor, velocity, state.air, points, n_harmonics)
+    return rotor_tones(rotor, state.velocity, state.air, points, n_harmonics)
 
 
 @partial(compiled, static_argnames=("n_chordwise", "n_contour"))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from pathlib import Path
 
 import numpy as np
@@ -117,3 +118,29 @@ def write_sound(
     if full_scale is None:
         full_scale = common_full_scale(record)
     return write_wav(path, record, full_scale, SAMPLE_RATE)
+
+
+def write_sounds(files: Mapping[Path, Analysis], duration: float) -> list[Recording]:
+    """Write sound files of one full scale, so that they can be compared by ear.
+
+    Parameters
+    ----------
+    files : mapping of Path to Analysis
+        Analyses by their WAV file.
+    duration : float
+        About how long [s].
+
+    Returns
+    -------
+    list of Recording
+        The files and their calibration: the highest peak of all, rounded up.
+
+    Raises
+    ------
+    ValueError
+        The same as from `write_sound`.
+    """
+    full_scale = common_full_scale(
+        *(pressure_record(analysis, duration) for analysis in files.values())
+    )
+    return [write_sound(file, analysis, duration, full_scale) for file, analysis in files.items()]

@@ -8,7 +8,6 @@ from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from propmdao.commands.json_output import print_json
 from propmdao.commands.observer_options import (
     add_observers,
     add_surroundings,
@@ -22,13 +21,14 @@ from propmdao.commands.options import (
     asked_of,
     number,
 )
-from propmdao.commands.output_files import (
+from propmdao.commands.output.json_output import print_json
+from propmdao.commands.output.output_files import (
     require_matplotlib,
     require_output,
     require_output_folder,
     save_figures,
 )
-from propmdao.commands.warning_lines import progress_line, warning_lines
+from propmdao.commands.output.warning_lines import progress_line, warning_lines
 from propmdao.formats.endings import POLAR_READERS, described
 from propmdao.records.quantities import ASKED
 
@@ -189,7 +189,7 @@ def add_analyze(commands: argparse._SubParsersAction[Any]) -> None:
 
 def _analyze(options: argparse.Namespace) -> None:
     _check(options)
-    listening = listening_of(options)
+    listening = listening_of(options, options.incidence_deg)
     _check_observers(options, len(listening.observers))
     asked = asked_of(options) | air_of(options) | {"listening": listening}
     points = [asked | {"rpm": rpm} for rpm in _rpm_values(options.rpm)]

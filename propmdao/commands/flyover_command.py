@@ -8,7 +8,6 @@ import dataclasses
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from propmdao.commands.json_output import print_json
 from propmdao.commands.observer_options import add_absorption, air_of
 from propmdao.commands.options import (
     add_asked,
@@ -17,21 +16,23 @@ from propmdao.commands.options import (
     asked_of,
     number,
 )
-from propmdao.commands.output_files import (
+from propmdao.commands.output.json_output import print_json
+from propmdao.commands.output.output_files import (
     require_matplotlib,
     require_output,
     require_output_folder,
     save_figures,
 )
-from propmdao.commands.warning_lines import warning_lines
+from propmdao.commands.output.warning_lines import warning_lines
 from propmdao.runtime.output_files import replacing
 
 if TYPE_CHECKING:
     from propmdao.analysis.flights.flyover_results import Flyover
 
 DESCRIPTION = """\
-What a microphone on the ground hears of a propeller in level flight, its axis along the path:
-loudest A-weighted level, SEL and EPNL, level against time, sound.
+What a microphone on the ground hears of a propeller in level flight: loudest A-weighted level, SEL
+and EPNL, level against time, sound. Its axis is along the path, or at an --incidence to it: a drone
+that leans forward by 20 deg flies at 70.
 
 Tones come as a pressure record with its Doppler shift, broadband self-noise in third octaves that
 shift with it; hard ground reflects, air absorbs on the way. Steps are half seconds.
@@ -42,6 +43,7 @@ examples:
   propmdao flyover apcsf_11x4.7 --thrust 1.2 --speed 8 --height 20
   propmdao flyover apcsf_11x4.7 --rpm 4200 --speed 8 --height 20 --sideline 30 --trip heavy
   propmdao flyover apcsf_11x4.7 --rpm 4200 --speed 8 --height 50 --microphone 1.2 --wav over.wav
+  propmdao flyover apcmr_8x4.5 --rpm 6000 --speed 10 --incidence 70 --height 20
 
 Levels: dBA re 20 uPa; SEL re (20 uPa)^2 s; EPNL in EPNdB. Exit status: 0, or 2 with one line on
 stderr.
@@ -65,7 +67,8 @@ def add_flyover(commands: argparse._SubParsersAction[Any]) -> None:
         EXAMPLES,
     )
     add_propeller(command)
-    add_asked(command, ("rpm", "thrust", "speed", "density", "twist_offset_deg", "viscous"))
+    names = ("rpm", "thrust", "speed", "incidence_deg", "density", "twist_offset_deg", "viscous")
+    add_asked(command, names)
     command.add_argument(
         "--height", type=number, required=True, metavar="M", help="of the propeller over ground [m]"
     )

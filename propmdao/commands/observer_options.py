@@ -87,8 +87,8 @@ def add_surroundings(command: argparse.ArgumentParser) -> None:
     group.add_argument(
         "--level",
         action="store_true",
-        help="level flight: the axis lies along the ground, azimuth 0 is down; by default it stands"
-        " upright: hover, climb",
+        help="level flight: the axis lies along the ground, azimuth 0 is down; at an incidence it"
+        " leans forward by 90 deg less that; by default it stands upright: hover, climb",
     )
     add_absorption(group)
 
@@ -111,13 +111,15 @@ def add_absorption(group: argparse._ActionsContainer) -> None:
     )
 
 
-def listening_of(options: argparse.Namespace) -> Listening:
+def listening_of(options: argparse.Namespace, incidence_deg: float = 0.0) -> Listening:
     """Observers, ground and air of a command line.
 
     Parameters
     ----------
     options : argparse.Namespace
         What was typed, with the options of `add_observers` and perhaps of `add_surroundings`.
+    incidence_deg : float
+        Angle between the shaft and the direction of flight [deg]: it says where the ground is.
 
     Returns
     -------
@@ -175,9 +177,9 @@ def listening_of(options: argparse.Namespace) -> Listening:
         add("circle", circle(radius, int(n), elevation))
     # What is named by the ground is turned into the rotor's axes.
     for coordinates in options.grid:
-        add("grid", surroundings.from_ground_axes(grid(*coordinates)))
+        add("grid", surroundings.from_ground_axes(grid(*coordinates), incidence_deg))
     for radius, step in options.hemisphere:
-        add("hemisphere", surroundings.from_ground_axes(hemisphere(radius, step)))
+        add("hemisphere", surroundings.from_ground_axes(hemisphere(radius, step), incidence_deg))
     observers = np.concatenate([np.zeros((0, 3)), *positions])
     return Listening(observers, surroundings, tuple(groups))
 

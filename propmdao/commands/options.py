@@ -51,6 +51,9 @@ def add_command(
         allow_abbrev=False,
     )
     take_negative_ranges(command)
+    command.add_argument(
+        "--quiet", action="store_true", help="without progress on stderr; warnings are said"
+    )
     command.set_defaults(command=run)
     return command
 

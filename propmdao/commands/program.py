@@ -16,11 +16,14 @@ from typing import Any, NoReturn
 
 import propmdao
 from propmdao.commands.analyze_command import add_analyze
-from propmdao.commands.export_command import add_export
+from propmdao.commands.designs.compare_command import add_compare
+from propmdao.commands.designs.optimise_command import add_optimise
+from propmdao.commands.exchange.export_command import add_export
+from propmdao.commands.exchange.wopwop_command import add_wopwop
 from propmdao.commands.flyover_command import add_flyover
-from propmdao.commands.json_output import print_json
+from propmdao.commands.output.json_output import print_json
+from propmdao.commands.output.progress import tell_progress
 from propmdao.commands.sweep_command import add_sweep
-from propmdao.commands.wopwop_command import add_wopwop
 from propmdao.runtime.output_files import reason_of
 from propmdao.runtime.terminal import print_line, printable
 
@@ -64,6 +67,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
         try:
             options = parser.parse_args(arguments)
             name = f"{parser.prog} {options.name}"
+            tell_progress(getattr(options, "quiet", False))
+            options.arguments = sys.argv[1:] if arguments is None else list(arguments)
             options.command(options)
         finally:  # here, where its errors are caught: also after --help
             sys.stdout.flush()
@@ -121,6 +126,8 @@ def build_parser() -> argparse.ArgumentParser:
     listing.add_argument("--json", action="store_true", help="print JSON instead of a table")
 
     add_analyze(commands)
+    add_compare(commands)
+    add_optimise(commands)
     add_sweep(commands)
     add_flyover(commands)
     add_export(commands)

@@ -23,7 +23,6 @@ BAND = (
 )
 _TWIST_AT = 0.75  # r/R at which an elastic blade's twist is told
 TONES_ONLY = "Tones only: with broadband noise (--broadband) it is louder, above all in dBA."
-TONES_OF_A_TILTED_ROTOR = "Tones only: broadband noise is of axial flight."
 
 # Results of a band: label, formats of the number and of its changes.
 _BAND_ROWS = {
@@ -69,11 +68,7 @@ def print_analyses(analyses: Sequence[dict[str, Any]]) -> None:
     """
     console = plain_console()
     first = analyses[0]
-    incidence = first["point"]["incidence_deg"]
-    tilted = f" at an incidence of {incidence:g} deg" if incidence else ""
-    _print_propeller(
-        console, first, f"speed {first['speed']:.4g} m/s{tilted}, air {first['rho']:.4g} kg/m3"
-    )
+    _print_propeller(console, first, f"{_flight(first)}, air {first['rho']:.4g} kg/m3")
     console.print(_operating_points(analyses))
     if any(analysis["observers"] for analysis in analyses):
         console.print(_levels(analyses))
@@ -82,7 +77,7 @@ def print_analyses(analyses: Sequence[dict[str, Any]]) -> None:
         around = Surroundings(**first["listening"]["surroundings"])
         console.print(f"Levels: {around}{trip}.", highlight=False)
         if broadband is None:
-            console.print(TONES_OF_A_TILTED_ROTOR if incidence else TONES_ONLY)
+            console.print(TONES_ONLY)
     else:
         console.print("No observers: --arc RADIUS ELEVATION... adds their noise.\n")
     print_doubts(analyses)
@@ -103,8 +98,8 @@ def print_flyover(result: dict[str, Any]) -> None:
     _print_propeller(
         console,
         result,
-        f"{result['rpm']:.1f} rpm, thrust {result['thrust']:.4g} N, speed"
-        f" {result['speed']:.4g} m/s, {flight['height']:g} m above the ground",
+        f"{result['rpm']:.1f} rpm, thrust {result['thrust']:.4g} N, {_flight(result)},"
+        f" {flight['height']:g} m above the ground",
     )
     print_doubts([result])
     table = _table()
@@ -126,6 +121,13 @@ def print_flyover(result: dict[str, Any]) -> None:
         highlight=False,
     )
     print_files(result)
+
+
+def _flight(result: dict[str, Any]) -> str:
+    """Words for speed and incidence."""
+    incidence = result["point"]["incidence_deg"]
+    tilted = f" at an incidence of {incidence:g} deg" if incidence else ""
+    return f"speed {result['speed']:.4g} m/s{tilted}"
 
 
 def _print_propeller(console: Console, result: dict[str, Any], condition: str) -> None:

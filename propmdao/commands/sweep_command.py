@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import argparse
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 from propmdao.commands.observer_options import (
@@ -19,7 +19,7 @@ from propmdao.commands.options import (
     number,
     number_or_range,
 )
-from propmdao.commands.warning_lines import warning_lines
+from propmdao.commands.output.warning_lines import warning_lines
 from propmdao.records.quantities import VARIABLES
 from propmdao.records.units import Range
 from propmdao.runtime.terminal import print_line
@@ -111,14 +111,14 @@ def add_sweep(commands: argparse._SubParsersAction[Any]) -> None:
 
 
 def _sweep(options: argparse.Namespace) -> None:
-    listening = listening_of(options)
     asked = {name: getattr(options, name) for name in ASKED_OF_ALL} | air_of(options)
+    points = _points(options)
+    listening = listening_of(options, _incidence(options, points))
     # Slow to import, so only once the arguments are known to be good.
     from propmdao.analysis.sweeps import sweep
     from propmdao.formats.propellers import load_propeller
     from propmdao.runtime.worker_processes import WorkerLostError
 
-    points = _points(options)
     with warning_lines("sweep"):
         propeller = load_propeller(options.propeller)
     try:
@@ -139,6 +139,17 @@ def _sweep(options: argparse.Namespace) -> None:
     print_line(f"{counts}; {options.out}")
     for reason in list(dict.fromkeys(failures))[:3]:
         print_line(f"  failed: {reason}")
+
+
+def _incidence(options: argparse.Namespace, points: Sequence[Mapping[str, float]]) -> float:
+    """Incidence of the points, by which --level turns observers that are placed by the ground."""
+    every = {point.get("incidence_deg", 0.0) for point in points}
+    if options.level and (options.grid or options.hemisphere) and len(every) > 1:
+        raise ValueError(
+            "--grid and --hemisphere are placed by the ground: with --level all points need the"
+            f" same incidence; they have {len(every)}"
+        )
+    return every.pop()
 
 
 def _points(options: argparse.Namespace) -> list[dict[str, float]]:

@@ -17,6 +17,7 @@ from propmdao.figures.style import (
     half_circle,
     level_line,
     line_colors,
+    line_styles,
     literal,
     page,
     say_silent,
@@ -116,9 +117,10 @@ def _lines(levels: Levels) -> list[_Line]:
     """Lines of a polar diagram: colours by source, styles by the sound that they belong to."""
     single = {name: level for name, level in levels.items() if not isinstance(level, Mapping)}
     compared = {name: level for name, level in levels.items() if isinstance(level, Mapping)}
-    colors = line_colors(single)
+    colors, styles = line_colors(single), line_styles(single)
     lines = [
-        _Line(name, colors[name], "-", np.asarray(level, float)) for name, level in single.items()
+        _Line(name, colors[name], styles[name], np.asarray(level, float))
+        for name, level in single.items()
     ]
     for i, (name, sources) in enumerate(compared.items()):
         colors, style = line_colors(sources), LINE_STYLES[i % len(LINE_STYLES)]

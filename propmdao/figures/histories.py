@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import numpy.typing as npt
 
-from propmdao.figures.style import GRID, level_line, line_colors, literal, page
+from propmdao.figures.style import GRID, level_line, line_colors, line_styles, literal, page
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -41,12 +41,13 @@ def level_history(
     figure = page(6.0)
     axes = figure.add_subplot()
     axes.grid(**GRID)
-    colors = line_colors(levels)
+    colors, styles = line_colors(levels), line_styles(levels)
     for name, level in levels.items():
         axes.plot(
             np.asarray(time),
             np.asarray(level),
             color=colors[name],
+            linestyle=styles[name],
             label=literal(name),
             **level_line(name),
         )

@@ -76,7 +76,7 @@ def analysis_figures(
     levels = source_levels(sound, a_weighted)
     label = f"OASPL, {LEVEL_DBA if a_weighted else LEVEL}"
     numbers = {"directivity": 0, "hemisphere": 0}
-    for kind, members in _groups(analysis.listening):
+    for kind, members in observer_groups(analysis.listening):
         here = {source: level[members] for source, level in levels.items()}
         if kind == "arc":
             name, figure = "directivity", _arc(positions[members], here, label, title)
@@ -162,8 +162,21 @@ def _operation(analysis: Analysis) -> str:
     return f"{analysis.propeller.name}, {analysis.rpm:.0f} rpm, {flight}"
 
 
-def _groups(listening: Listening) -> Iterator[tuple[str, slice]]:
-    """Kind and members of each group of observers."""
+def observer_groups(listening: Listening) -> Iterator[tuple[str, slice]]:
+    """Kind and members of each group of observers.
+
+    Parameters
+    ----------
+    listening : Listening
+        Observers; without groups they count as an arc where all are at one distance and azimuth.
+
+    Yields
+    ------
+    kind : str
+        "arc", "point", "circle", "grid" or "hemisphere".
+    members : slice
+        Indices of the group's observers.
+    """
     if not listening.groups:
         seen = directions(listening.observers)
         spread = max(np.ptp(seen.radius), np.ptp(seen.azimuth_deg))

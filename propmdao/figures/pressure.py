@@ -16,6 +16,7 @@ from propmdao.figures.style import (
     SOURCE_COLORS,
     Floats,
     line_colors,
+    line_styles,
     literal,
     rows_of_axes,
     say_silent,
@@ -113,14 +114,15 @@ def pressure(records: Mapping[str, PressureRecord]) -> Figure:
     """
     figure, rows = rows_of_axes(len(records))
     for axes, (name, record) in zip(rows, records.items(), strict=True):
-        colors = line_colors(record.parts)
+        colors, styles = line_colors(record.parts), line_styles(record.parts)
         for i, (part, values) in enumerate(record.parts.items()):
             if np.sqrt(np.mean(np.square(values))) < _LOWEST_PRESSURE:
                 continue
             width = 2.0 if part in SOURCE_COLORS else 1.0 + i
             axes.plot(
-                1e3 * record.time, 1e3 * values, color=colors[part], linewidth=width, label=part
-            )
+                1e3 * record.time, 1e3 * values, styles[part], color=colors[part], linewidth=width,
+                label=part,
+            )  # fmt: skip
         axes.set_title(literal(name), fontsize="medium", loc="left")
         axes.set_ylabel("pressure, mPa")
         axes.margins(x=0.0)

@@ -8,18 +8,20 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import numpy.typing as npt
 
-from propmdao.acoustics.levels.bands import bands_in_bins, tones_in_bins
+from propmdao.acoustics.levels.bands import HALF_BAND, bands_in_bins, tones_in_bins
 from propmdao.acoustics.levels.decibels import level_db, mean_square, spl_db
 from propmdao.figures.sound import Sound, amplitudes, band_levels
 from propmdao.figures.style import (
     GRID,
     LEVEL,
     LOWEST_LEVEL,
+    MARKERS,
     RUN_COLORS,
     SOURCE_COLORS,
     Measured,
     level_line,
     line_colors,
+    line_styles,
     literal,
     page,
     rows_of_axes,
@@ -30,8 +32,6 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 _LOWEST, _HIGHEST = 50.0, 20e3  # Hz, of what is drawn
-_HALF_BAND = 10**0.05  # from the middle of a third octave to its edge
-_MARKERS = "osD^v<>"
 
 
 def harmonic_spectrum(sounds: Mapping[str, Sound], observer: int = 0) -> Figure:
@@ -67,7 +67,7 @@ def harmonic_spectrum(sounds: Mapping[str, Sound], observer: int = 0) -> Figure:
             stems = axes.stem(
                 frequency[drawn] + beside, level[drawn], bottom=floor, basefmt=" ", label=source
             )
-            stems.markerline.set(color=colors[source], markersize=5, marker=_MARKERS[i])
+            stems.markerline.set(color=colors[source], markersize=5, marker=MARKERS[i])
             stems.stemlines.set(color=colors[source], linewidth=2.0)
         axes.set_title(f"{literal(name)}: BPF {frequency[0]:.1f} Hz", fontsize="medium", loc="left")
         axes.set(ylabel=f"SPL, {LEVEL}", ylim=(floor, top))
@@ -111,7 +111,7 @@ def narrowband_spectrum(
         axes.set_ylabel(f"SPL, {LEVEL}")
     top = 5.0 * np.ceil(loudest / 5.0 + 0.5)
     rows[0].set_ylim(max(top - 60.0, LOWEST_LEVEL), top)
-    _frequency_axis(rows[-1])
+    frequency_axis(rows[-1])
     handles, names = rows[0].get_legend_handles_labels()
     figure.legend(handles, names, loc="outside upper center", ncols=3, fontsize="medium")
     return figure
@@ -136,7 +136,7 @@ def _draw_narrowband(axes: Any, sound: Sound, observer: int, bins: npt.NDArray[A
         label=f"broadband noise, {width}",
     )  # fmt: skip
     center, bands = sound.bands_hz, band_levels(sound, observer)
-    edges = np.append(center / _HALF_BAND, center[-1] * _HALF_BAND)
+    edges = np.append(center / HALF_BAND, center[-1] * HALF_BAND)
     axes.stairs(bands, edges, baseline=None, color=RUN_COLORS[0], linewidth=2.0,
                 label="third octaves, tones and broadband noise")  # fmt: skip
     return float(bands.max())
@@ -174,14 +174,13 @@ def third_octaves(
     every = [*levels.values(), *(known for _, known in measured.values())]
     top = 5.0 * np.ceil(max(LOWEST_LEVEL, *(np.max(level) for level in every)) / 5.0 + 0.5)
     floor = max(top - 60.0, LOWEST_LEVEL)
-    colors = line_colors(levels)
+    colors, styles = line_colors(levels), line_styles(levels)
     for name, level in levels.items():
         color = colors[name]
         if np.max(level) > floor:
-            style = "-" if name in SOURCE_COLORS or not measured else "--"
             axes.plot(
-                np.asarray(bands_hz), np.asarray(level), style, color=color, label=literal(name),
-                **level_line(name),
+                np.asarray(bands_hz), np.asarray(level), styles[name], color=color,
+                label=literal(name), **level_line(name),
             )  # fmt: skip
         if name in measured:
             band, known = (np.asarray(values, float) for values in measured[name])
@@ -190,7 +189,7 @@ def third_octaves(
             )
     axes.set(ylabel=f"band level, {LEVEL}", ylim=(floor, top))
     axes.set_title(literal(title), fontsize="medium", loc="left")
-    _frequency_axis(axes)
+    frequency_axis(axes)
     if axes.lines:
         figure.legend(loc="outside upper center", ncols=4)
     else:
@@ -198,7 +197,14 @@ def third_octaves(
     return figure
 
 
-def _frequency_axis(axes: Any) -> None:
+def frequency_axis(axes: Any) -> None:
+    """Make an axis of frequencies from 50 Hz to 20 kHz.
+
+    Parameters
+    ----------
+    axes : Axes
+        Axes whose horizontal axis it is.
+    """
     axes.set(xscale="log", xlim=(_LOWEST, _HIGHEST), xlabel="frequency, Hz")
     ticks = [50, 100, 200, 500, 1000, 2000, 5000, 10000, 20000]
     axes.set_xticks(ticks, [f"{tick:g}" if tick < 1000 else f"{tick // 1000}k" for tick in ticks])

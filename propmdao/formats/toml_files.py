@@ -88,6 +88,8 @@ def write_toml(path: str | os.PathLike[str], propeller: Propeller) -> int:
     for key in (*TRANSITION, *MATERIAL):
         if (value := getattr(propeller, key)) is not None:
             lines.append(f"{key} = {value!r}")
+    if propeller.tip is not None:
+        lines.append(tomli_w.dumps({"tip": propeller.tip}).rstrip())
     tables = []
     for position, name in propeller.airfoils:
         if name.endswith(COORDINATE_ENDINGS):

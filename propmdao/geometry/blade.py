@@ -32,6 +32,9 @@ class Blade:
     camber_shape, thickness_shape : (n_stations, n_chord) arrays
         Camber line and full thickness scaled to a maximum of 1, on
         `propeller.airfoils.airfoil.CHORD_FRACTION`. Both are laid off perpendicular to the chord.
+    edge_over_R, edge_angle : (n_stations,) arrays or None
+        Thickness of the trailing edge over the tip radius and angle between the surfaces there
+        [rad], where they are described; None: those of the sections.
     """
 
     radius: jax.Array
@@ -43,6 +46,8 @@ class Blade:
     camber_over_chord: jax.Array
     camber_shape: jax.Array
     thickness_shape: jax.Array
+    edge_over_R: jax.Array | None = None
+    edge_angle: jax.Array | None = None
 
     @classmethod
     def from_propeller(cls, propeller: Propeller) -> Blade:
@@ -77,6 +82,7 @@ class Blade:
         max_thickness = thickness.max(axis=1)
         described_thickness = propeller.thickness_over_chord
         described_camber = propeller.camber_over_chord
+        edge, angle = propeller.trailing_edge_over_R, propeller.trailing_edge_angle_deg
         return cls(
             radius=jnp.asarray(0.5 * propeller.diameter, dtype=float),
             chord_over_R=jnp.asarray(propeller.c_over_R),
@@ -91,6 +97,8 @@ class Blade:
             ),
             camber_shape=jnp.asarray(shape),
             thickness_shape=jnp.asarray(thickness / max_thickness[:, None]),
+            edge_over_R=None if edge is None else jnp.asarray(edge),
+            edge_angle=None if angle is None else jnp.asarray(np.radians(angle)),
         )
 
 

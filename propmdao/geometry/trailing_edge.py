@@ -38,12 +38,19 @@ def trailing_edge(blade: Blade, span: SpanInterpolation) -> tuple[jax.Array, jax
     Returns
     -------
     thickness_over_chord : (n,) array
-        Thickness of the blunt edge over chord, 0 where the sections are sharp or rounded.
+        Thickness of the blunt edge over chord, as described; that of the sections otherwise, 0
+        where they are sharp or rounded.
     angle : (n,) array
-        Angle between upper and lower surface ahead of the edge [rad]: of a straight line through
-        the thickness from 0.945 to 0.992 of the chord; negative where it grows toward the edge.
+        Angle between upper and lower surface ahead of the edge [rad], as described; that of a
+        straight line through the thickness of the sections from 0.945 to 0.992 of the chord
+        otherwise, negative where it grows toward the edge.
     """
     maximum = span.linear @ blade.thickness_over_chord
     edge = (span.linear @ blade.thickness_shape[:, -1]) * maximum
+    if blade.edge_over_R is not None:
+        edge = (span.linear @ blade.edge_over_R) / (span.smooth @ blade.chord_over_R)
     slope = (span.linear @ (blade.thickness_shape @ _slope_weights())) * maximum
-    return edge, 2.0 * jnp.arctan(-0.5 * slope)
+    angle = 2.0 * jnp.arctan(-0.5 * slope)
+    if blade.edge_angle is not None:
+        angle = span.linear @ blade.edge_angle
+    return edge, angle

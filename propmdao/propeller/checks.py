@@ -30,6 +30,10 @@ THICKNESS = Range(1e-4, 0.999)
 CAMBER = Range(-0.5, 0.5)
 #: Cross-section over the chord squared.
 AREA = Range(1e-5, 10.0)
+#: Thickness of a blunt trailing edge over tip radius.
+EDGE = Range(0.0, 1.0)
+#: Angle between the surfaces at the trailing edge.
+EDGE_ANGLE = Range(0.0, 60.0, "deg")
 
 
 class PropellerError(ValueError):

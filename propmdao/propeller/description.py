@@ -15,7 +15,7 @@ from propmdao.propeller.checks import PropellerError
 from propmdao.records.quantities import require_asked
 
 if TYPE_CHECKING:
-    from propmdao.records.models import Transition
+    from propmdao.records.models import Tip, Transition
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -30,9 +30,15 @@ DISTRIBUTIONS = (
     "rake_over_R",
     "camber_over_chord",
     "area_over_c2",
+    "trailing_edge_over_R",
+    "trailing_edge_angle_deg",
 )
 #: Those of them that follow from the airfoils where they are not described.
-_OF_AIRFOILS = ("thickness_over_chord", "camber_over_chord", "area_over_c2")
+_OF_AIRFOILS = DISTRIBUTIONS[3:4] + DISTRIBUTIONS[6:]
+#: Those that may be one number for all stations.
+_UNIFORM = ("sweep_over_R", "rake_over_R", "trailing_edge_over_R", "trailing_edge_angle_deg")
+#: Planforms of a blade's tip, as `propmdao.records.models.Tip` has them.
+TIPS = ("rounded", "square")
 #: Transition of the boundary layers, optional numbers of a propeller's file.
 TRANSITION = ("n_crit", "trip_upper", "trip_lower")
 #: Material of a propeller, none of which need be known.
@@ -74,6 +80,13 @@ class Propeller:
     area_over_c2 : (n_stations,) array, optional
         Cross-section of the solid blade over the chord squared, for elastic blades; by default that
         of the airfoils at their thickness. Roots that run into a hub have more.
+    trailing_edge_over_R : (n_stations,) array or number, optional
+        Thickness of the blunt trailing edge over the tip radius, for broadband noise; the airfoils'
+        own by default, which where blades are printed or moulded is too sharp.
+    trailing_edge_angle_deg : (n_stations,) array or number, optional
+        Angle between the surfaces at the trailing edge [deg]; the airfoils' own by default.
+    tip : {"rounded", "square"}, optional
+        Planform of the tip, for broadband noise; None, the default, says nothing about it.
     source : str
         Origin of the numbers.
     n_crit, trip_upper, trip_lower : float, optional
@@ -102,6 +115,9 @@ class Propeller:
     rake_over_R: FloatArray = dataclasses.field(default_factory=lambda: np.zeros(()))
     camber_over_chord: FloatArray | None = None
     area_over_c2: FloatArray | None = None
+    trailing_edge_over_R: FloatArray | None = None
+    trailing_edge_angle_deg: FloatArray | None = None
+    tip: Tip | None = None
     source: str = ""
     n_crit: float | None = None
     trip_upper: float | None = None
@@ -131,7 +147,7 @@ class Propeller:
             value = getattr(self, key)
             if key in _OF_AIRFOILS and value is None:
                 continue
-            if key in ("sweep_over_R", "rake_over_R"):
+            if key in _UNIFORM:
                 value = _everywhere(key, value, r)
             object.__setattr__(self, key, checks.distribution(key, value, r))
         chord, beta, thickness = self.c_over_R, self.beta_deg, self.thickness_over_chord
@@ -145,6 +161,14 @@ class Propeller:
             checks.require_within("camber_over_chord", checks.CAMBER, self.camber_over_chord, r)
         if self.area_over_c2 is not None:
             checks.require_within("area_over_c2", checks.AREA, self.area_over_c2, r)
+        for key, allowed in (
+            ("trailing_edge_over_R", checks.EDGE),
+            ("trailing_edge_angle_deg", checks.EDGE_ANGLE),
+        ):
+            if (value := getattr(self, key)) is not None:
+                checks.require_within(key, allowed, value, r)
+        if self.tip not in (None, *TIPS):
+            raise PropellerError(f"tip must be one of {', '.join(TIPS)}; it is {self.tip!r}")
         object.__setattr__(self, "airfoils", checks.airfoil_pairs(self.airfoils))
 
     def __setstate__(self, state: dict[str, Any]) -> None:
@@ -181,7 +205,7 @@ class Propeller:
 
 
 def _everywhere(key: str, value: Any, r: FloatArray) -> Any:
-    """Sweep or rake at the stations, where it is one number, or was at a propeller's old ones."""
+    """Values at the stations of what is one number, or was at a propeller's old stations."""
     if np.ndim(value) == 0:
         return np.full(r.size, checks.number(key, value))
     # Only a propeller's own arrays are read-only: a user's list of another length is a mistake.

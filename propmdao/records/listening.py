@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import math
 from typing import Literal, get_args
 
 import numpy as np
@@ -32,8 +33,10 @@ class Surroundings:
         on hard ground, wherever it is, so that pressures are doubled; None: no ground. The flow
         around the rotor knows of no ground.
     level_flight : bool
-        Whether the rotor's axis lies along the ground, azimuth 0 pointing down to the ground; by
-        default the axis stands upright, as in hover and climb.
+        Whether the rotor flies along the ground. In axial flight its axis lies along the ground,
+        azimuth 0 pointing down to it; at an incidence the axis leans forward by 90 degrees less
+        the incidence. By default the axis stands upright, as in hover and climb, and the height is
+        that of the moment.
     absorption : bool
         Whether the air, which is that of the operating point, absorbs sound.
 
@@ -65,12 +68,25 @@ class Surroundings:
             parts.append("absorbing air")
         return ", ".join(parts) or "free field"
 
-    @property
-    def up(self) -> tuple[float, float, float]:
-        """Unit vector away from the ground in the rotor's axes."""
-        return (-1.0, 0.0, 0.0) if self.level_flight else (0.0, 0.0, 1.0)
+    def up(self, incidence_deg: float = 0.0) -> tuple[float, float, float]:
+        """Unit vector away from the ground in the rotor's axes.
 
-    def from_ground_axes(self, positions: ArrayLike) -> Floats:
+        Parameters
+        ----------
+        incidence_deg : float
+            Angle between the shaft and the direction of flight [deg].
+
+        Returns
+        -------
+        (3,) tuple
+            In level flight perpendicular to the flight, in the plane of shaft and flight.
+        """
+        if not self.level_flight:
+            return 0.0, 0.0, 1.0
+        incidence = math.radians(incidence_deg)
+        return -math.cos(incidence), 0.0, math.sin(incidence)
+
+    def from_ground_axes(self, positions: ArrayLike, incidence_deg: float = 0.0) -> Floats:
         """Positions in the rotor's axes.
 
         Parameters
@@ -78,14 +94,16 @@ class Surroundings:
         positions : (..., 3) array
             Positions from the rotor centre [m], the third coordinate pointing up and, in level
             flight, the first one ahead.
+        incidence_deg : float
+            Angle between the shaft and the direction of flight [deg].
 
         Returns
         -------
         (..., 3) array
             Positions from the rotor centre, in its axes [m].
         """
-        x, y, z = np.moveaxis(np.asarray(positions, float), -1, 0)
-        return np.stack([-z, y, x] if self.level_flight else [x, y, z], axis=-1)
+        left, up = np.array([0.0, 1.0, 0.0]), np.array(self.up(incidence_deg))
+        return np.asarray(positions, float) @ np.stack([np.cross(left, up), left, up])
 
 
 @dataclasses.dataclass(frozen=True)

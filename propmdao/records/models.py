@@ -193,7 +193,7 @@ class SelfNoiseModel:
         Trip of the boundary layers in the noise model; it does not change the loads. "none" leaves
         it to the transition of the loads (`Model.completed`).
     tip : {"rounded", "square"}
-        Planform of the blade's tip.
+        Planform of the blade's tip. "rounded" leaves it to the propeller's description.
 
     Raises
     ------
@@ -243,13 +243,15 @@ class Model:
     noise: NoiseModel = NoiseModel()
     fidelity: Fidelity = Fidelity()
 
-    def completed(self, described: Transition) -> Model:
+    def completed(self, described: Transition, tip: Tip | None) -> Model:
         """Fill in what the model leaves to the propeller.
 
         Parameters
         ----------
         described : Transition
             Transition of the propeller's description.
+        tip : {"rounded", "square"} or None
+            Tip of the propeller's description; None says nothing about it.
 
         Returns
         -------
@@ -258,8 +260,11 @@ class Model:
             are.
         """
         transition, noise = self.loads.transition.completed(described), self.noise
-        if noise.broadband is not None and noise.broadband.trip == "none":
-            broadband = dataclasses.replace(noise.broadband, trip=transition.trip_in_noise)
+        if (broadband := noise.broadband) is not None:
+            if broadband.trip == "none":
+                broadband = dataclasses.replace(broadband, trip=transition.trip_in_noise)
+            if broadband.tip == "rounded" and tip is not None:
+                broadband = dataclasses.replace(broadband, tip=tip)
             noise = dataclasses.replace(noise, broadband=broadband)
         loads = dataclasses.replace(self.loads, transition=transition)
         return dataclasses.replace(self, loads=loads, noise=noise)

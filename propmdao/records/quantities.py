@@ -106,7 +106,7 @@ _ASKED = (
     ),
     Quantity(
         "incidence_deg", "deg", "angle between shaft and direction of flight, 0 is axial flight",
-        POINT, 0.0, option="--incidence", placeholder="DEG",
+        POINT, 0.0, variable="incidence", option="--incidence", placeholder="DEG",
         help="angle between the shaft and the direction of flight [deg], default 0: axial, 90"
         " edgewise, above 90 with a descending part. A drone that leans forward by 20 deg in level"
         " flight flies at 70",

@@ -6,6 +6,7 @@ import dataclasses
 import math
 
 import jax.numpy as jnp
+from jax import Array
 
 from propmdao.records.air import Air
 from propmdao.records.pytrees import Scalar, record
@@ -49,6 +50,11 @@ class RotorState:
     def edgewise_speed(self) -> Scalar:
         """Part of the flight speed in the plane of the rotor, along +x [m/s]."""
         return self.speed * jnp.sin(self.incidence)
+
+    @property
+    def velocity(self) -> Array:
+        """Velocity of the flight in the rotor's axes, (3,) [m/s]."""
+        return jnp.stack(jnp.broadcast_arrays(self.edgewise_speed, 0.0, self.axial_speed))
 
     def turning(self, rotation_speed: Scalar) -> RotorState:
         """The same flight at another rotation speed [rad/s]."""

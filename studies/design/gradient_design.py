@@ -27,13 +27,21 @@ import openmdao.api as om
 import propmdao as pm
 from propmdao.acoustics.levels.decibels import level_db, oaspl_db
 from propmdao.acoustics.levels.weighting import level_dba
-from propmdao.analysis.comparisons import Cell, Row, Rows, markdown, print_comparison, side_by_side
+from propmdao.analysis.comparisons import (
+    Cell,
+    Row,
+    Rows,
+    markdown,
+    print_comparison,
+    side_by_side,
+    write_comparison,
+)
 from propmdao.analysis.self_noise import BANDS_HZ
 from propmdao.components.drivers.gradient_search import Search, run_slsqp
 from propmdao.components.drivers.search_history import read_history
 from propmdao.components.noise_objective_comp import soft_maximum_db
-from propmdao.figures import searches
 from propmdao.figures.blades import blade_comparison
+from propmdao.figures.designs import searches
 from propmdao.figures.directivity import directivity
 from propmdao.figures.spectra import third_octaves
 from propmdao.figures.style import save
@@ -243,7 +251,8 @@ def main() -> None:
         thesis.FIDELITY = COARSE
 
     results = design(output, options.evolution)
-    print_comparison(ROWS, results.columns(), output / "gradient_design.csv")
+    print_comparison(ROWS, results.columns())
+    write_comparison(ROWS, results.columns(), output / "gradient_design.csv")
     print(markdown(cost(results.searches)))
     for name, table in results.contributions.items():
         print(f"{name}:")

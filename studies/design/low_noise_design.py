@@ -20,11 +20,17 @@ import numpy as np
 import openmdao.api as om
 
 import propmdao as pm
-from propmdao.analysis.comparisons import ROWS, Cell, at_observer, print_comparison
+from propmdao.analysis.comparisons import (
+    ROWS,
+    Cell,
+    at_observer,
+    print_comparison,
+    write_comparison,
+)
 from propmdao.components import DifferentialEvolutionDriver, PropellerGroup
 from propmdao.components.geometry_comp import blade_distributions
 from propmdao.figures.blades import blade_comparison
-from propmdao.figures.convergence import convergence
+from propmdao.figures.designs.convergence import convergence
 from propmdao.figures.directivity import directivity
 from propmdao.figures.pressure import blade_passage, pressure
 from propmdao.figures.sound import Sound, source_levels
@@ -181,7 +187,9 @@ def main() -> None:
     rows = [(f"t/c {place}", f"{T_C} {place}", ".4f") for place in AT]
     rows += [(f"design lift {place}", f"{CL_I} {place}", ".4f") for place in AT]
     rows += [(f"section {place}", f"section {place}", "") for place in AT]
-    print_comparison([*rows, *ROWS], columns, output / "low_noise_design.csv")
+    rows += ROWS
+    print_comparison(rows, columns)
+    write_comparison(rows, columns, output / "low_noise_design.csv")
     same_rpm = evaluate(BASELINE, rpm=THESIS["rpm"][0])
     print(NOTES.format(**at_observer(same_rpm, MICROPHONE_INDEX)))
 

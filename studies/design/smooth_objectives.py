@@ -27,7 +27,7 @@ from scipy.ndimage import median_filter
 
 import propmdao as pm
 from propmdao.analysis.comparisons import Rows, markdown
-from propmdao.figures import searches
+from propmdao.figures.designs import searches
 from propmdao.figures.style import save
 from propmdao.runtime.output_files import replacing
 

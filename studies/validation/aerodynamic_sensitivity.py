@@ -28,7 +28,7 @@ from propmdao.analysis.wind_tunnel import (
     zero_thrust,
     zero_thrust_twist_deg,
 )
-from propmdao.figures import comparisons
+from propmdao.figures.measured import performance
 from propmdao.figures.style import save
 
 CASES = ("apcsf_11x4.7", "apce_10x7")
@@ -140,7 +140,7 @@ def main() -> None:
             f"Twist offset for the measured static CT: {fits_over_rpm(tunnel.static.rpm, still[0])}"
         )
         labels = "twist offset for the measured CT, deg", "error of CP with it, %"
-        figure = comparisons.over_rpm_and_advance_ratio(
+        figure = performance.over_rpm_and_advance_ratio(
             tunnel.static, climbing, dict(zip(labels, zip(still, moving, strict=True), strict=True))
         )
         save(figure, output / f"{case}_twist_needed.png")

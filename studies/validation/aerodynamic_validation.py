@@ -34,7 +34,7 @@ from propmdao.analysis.wind_tunnel import (
     zero_thrust_ratio,
     zero_thrust_twist_deg,
 )
-from propmdao.figures import comparisons
+from propmdao.figures.measured import performance
 from propmdao.figures.style import save
 from propmdao.geometry.blade import Blade
 from propmdao.propeller.catalog import catalog_names
@@ -334,13 +334,13 @@ def write_figures(output: Path, propellers: Sequence[Comparison]) -> None:
         comparison.propeller: {column.name: column.errors for column in comparison.columns}
         for comparison in propellers
     }
-    save(comparisons.errors_by_propeller(off), output / "catalogue.png")
+    save(performance.errors_by_propeller(off), output / "catalogue.png")
     for comparison in propellers:
         titles = [
             f"{comparison.propeller}, {c.name} ({c.twist_deg:+.2f} deg)" for c in comparison.columns
         ]
         moving = {t: c.dynamic for t, c in zip(titles, comparison.columns, strict=True)}
-        figure = comparisons.performance(comparison.tunnel.dynamic, moving)
+        figure = performance.performance(comparison.tunnel.dynamic, moving)
         save(figure, output / f"{comparison.propeller}.png")
 
 

@@ -23,7 +23,7 @@ import propmdao as pm
 from propmdao.acoustics.levels.decibels import spl_db
 from propmdao.acoustics.sources.formulation1a import tones
 from propmdao.analysis.wind_tunnel import read_wind_tunnel, zero_thrust, zero_thrust_twist_deg
-from propmdao.figures import comparisons
+from propmdao.figures.measured import performance
 from propmdao.figures.style import save
 from propmdao.geometry.meshes import propeller_surface
 from propmdao.geometry.surface import surface_panels
@@ -202,7 +202,7 @@ def main() -> None:
         print(f"The band lacks {reason}.")
     print(f"Measured levels are up to {off_power_law_db(levels):.1f} dB off a power of rpm.")
     names = [f"{rpm} rpm" for rpm in levels.rpm]
-    save(comparisons.tone_directivity(
+    save(performance.tone_directivity(
         ARC, dict(zip(names, levels.arc_db, strict=True)),
         levels.elevation_deg, dict(zip(names, levels.measured_db, strict=True)),
     ), output / "directivity.png")  # fmt: skip

@@ -286,10 +286,10 @@ def main() -> None:
         f"Re {name} thousand": (points.re > a) & (points.re <= b)
         for name, (a, b) in REYNOLDS_BANDS.items()
     }
-    from propmdao.figures.flow import sections
+    from propmdao.figures.measured import section_drag as drag_figures
     from propmdao.figures.style import save
 
-    figure = sections.drag_ratios(
+    figure = drag_figures.drag_ratios(
         points.cl, groups,
         {"n_crit 5, as computed": np.exp(columns["n_crit 5"]),
          "drag at the measured level": np.exp(columns["measured level"])},

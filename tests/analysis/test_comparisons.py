@@ -13,6 +13,7 @@ from propmdao.analysis.comparisons import (
     markdown,
     print_comparison,
     side_by_side,
+    write_comparison,
 )
 
 COLUMNS = {
@@ -25,7 +26,9 @@ COLUMNS = {
 @pytest.fixture
 def table(tmp_path, capsys):
     file = tmp_path / "table.csv"
-    print_comparison([("A, m", "a", ".2f"), ("name", "name", ""), ("B", "b", ".0f")], COLUMNS, file)
+    rows = [("A, m", "a", ".2f"), ("name", "name", ""), ("B", "b", ".0f")]
+    print_comparison(rows, COLUMNS)
+    write_comparison(rows, COLUMNS, file)
     with file.open(newline="") as stream:
         return capsys.readouterr().out.splitlines(), list(csv.reader(stream))
 

@@ -19,7 +19,7 @@ from propmdao.analysis.flights.flyover_results import Flight
 from propmdao.analysis.single_point import analyze
 from propmdao.analysis.sweeps import sweep
 from propmdao.analysis.wopwop import foreign_case
-from propmdao.commands.json_output import print_json
+from propmdao.commands.output.json_output import print_json
 from propmdao.formats.propellers import load_propeller
 from propmdao.records.fidelity import Fidelity
 from propmdao.runtime.finite import NotFiniteError

@@ -1,11 +1,20 @@
 """An analysis at an incidence: what is asked, found, heard, and refused."""
 
+import dataclasses
+
+import jax.numpy as jnp
 import numpy as np
 import pytest
 
 import propmdao as pm
+from propmdao.acoustics.broadband.rotor import rotor_self_noise
+from propmdao.acoustics.levels.decibels import level_db, mean_square
+from propmdao.aerodynamics.solutions.edgewise import FastEdgewiseWarning
 from propmdao.analysis.flights.flyovers import fly_over
-from propmdao.analysis.single_point import FastEdgewiseWarning, analyze
+from propmdao.analysis.self_noise import BANDS_HZ, strip_flow
+from propmdao.analysis.single_point import analyze
+from propmdao.geometry.blade import Blade
+from propmdao.geometry.lattice import strip_interpolation
 from propmdao.records.fidelity import Fidelity
 from propmdao.records.wake_law import WakeGrid
 
@@ -24,7 +33,7 @@ OBSERVERS = pm.arc(1.905, [-90.0, -60.0])
 
 def tilted(**asked):
     point = {"rpm": 4200.0, "speed": 8.0, "incidence_deg": 80.0}
-    return analyze(PROPELLER, viscous=False, fidelity=COARSE, **{**point, **asked})
+    return analyze(PROPELLER, viscous=False, **{"fidelity": COARSE, **point, **asked})
 
 
 @pytest.fixture(scope="module")
@@ -65,6 +74,62 @@ def test_unsteady_loading_is_heard_on_the_axis(edgewise):
     assert heard[1]["spl_bpf_db"] > silent[1]["spl_bpf_db"] + 10.0
 
 
+def test_over_ground_and_through_air_the_ways_add(edgewise):
+    """Level flight at 80 deg: the shaft leans forward by 10, and so does the mirror."""
+    around = pm.Surroundings(ground=3.0, level_flight=True)
+    up = np.array(around.up(80.0))
+    images = OBSERVERS - 2.0 * (OBSERVERS @ up + 3.0)[:, None] * up
+    free = tilted(observers=np.concatenate([OBSERVERS, images])).tones.total
+    over_ground = tilted(observers=OBSERVERS, surroundings=around)
+    np.testing.assert_allclose(over_ground.tones.total, free[:2] + free[2:], rtol=1e-9)
+    absorbed = tilted(observers=OBSERVERS, surroundings=pm.Surroundings(absorption=True))
+    lost = edgewise.spl_bpf_db() - absorbed.spl_bpf_db()
+    assert np.all((1e-4 < lost) & (lost < 0.1))
+
+
+def test_broadband_noise_is_that_of_the_flow_at_each_azimuth():
+    heard = tilted(observers=OBSERVERS, broadband=True)
+    loads, n = heard.loads, COARSE.n_azimuths
+    blade = Blade.from_propeller(PROPELLER)
+    radii = strip_interpolation(PROPELLER.r_over_R, COARSE.n_spanwise)
+
+    def flow(speed, lift):
+        return strip_flow(loads.strips, speed, lift, blade, radii)
+
+    # An azimuth of which all others are silent, one after the other.
+    speed, lift = loads.sections.relative_speed, loads.sections.lift_coefficient
+    one_by_one = [
+        rotor_self_noise(
+            flow(jnp.zeros_like(speed).at[k].set(speed[k]), lift),
+            2,
+            heard.state,
+            OBSERVERS,
+            BANDS_HZ,
+            n_azimuths=n,
+        ).total
+        for k in range(n)
+    ]
+    np.testing.assert_allclose(heard.broadband.total, sum(one_by_one), rtol=1e-9)
+    # It is no noise of the mean flow: where the air is fast it is far louder than elsewhere.
+    levels = level_db(jnp.stack(one_by_one).sum(axis=2))
+    assert np.all(levels.max(axis=0) - levels.min(axis=0) > 6.0)
+
+
+@pytest.mark.slow
+def test_broadband_noise_without_incidence_is_that_of_axial_flight():
+    longer = dataclasses.replace(COARSE.period_wake, turns=3.0)  # as in slow edgewise flight
+    axial, nearly = (
+        tilted(
+            incidence_deg=incidence,
+            observers=OBSERVERS[1:],
+            broadband=True,
+            fidelity=dataclasses.replace(COARSE, wake=longer, n_azimuths=24),
+        )
+        for incidence in (0.0, 1e-7)
+    )
+    np.testing.assert_allclose(nearly.broadband.total, axial.broadband.total, rtol=1e-6)
+
+
 def test_rotation_speed_for_a_thrust(edgewise):
     trimmed = tilted(rpm=None, thrust=float(edgewise.loads.thrust))
     assert trimmed.loads.converged
@@ -81,8 +146,6 @@ def test_fast_edgewise_flight_is_warned_of():
     [
         ({"incidence_deg": 151.0}, "incidence_deg must be within 0 ... 150 deg; it is 151"),
         ({"incidence_deg": float("nan")}, "incidence_deg must be within 0 ... 150 deg; it is nan"),
-        ({"broadband": True}, "incidence_deg must be 0 for broadband noise"),
-        ({"surroundings": pm.Surroundings(ground=10.0)}, "incidence_deg must be 0 for sound over"),
     ],
 )
 def test_what_is_not_modelled_is_refused(asked, complaint):
@@ -90,6 +153,41 @@ def test_what_is_not_modelled_is_refused(asked, complaint):
         tilted(observers=pm.arc(1.905, [-45.0]), **asked)
 
 
-def test_a_flyover_is_of_axial_flight(edgewise):
-    with pytest.raises(ValueError, match="incidence_deg must be 0 for a flyover"):
-        fly_over(edgewise, pm.Flight(height=50.0))
+@pytest.fixture(scope="module")
+def flown_over(edgewise):
+    return fly_over(edgewise, pm.Flight(height=10.0, duration=4.0, absorption=False))
+
+
+def test_a_flyover_is_what_is_heard_flying_along_at_every_moment(flown_over):
+    """Who flies along is for a moment where the microphone is: mean squares of half a second."""
+    lean = np.radians(10.0)
+    by_step = {name: power.sum(axis=1) for name, power in flown_over.mean_square.items()}
+    for k in (2, 4, 6):
+        moments = flown_over.time[k] + 0.5 * (np.arange(9) - 4) / 9
+        ahead, down = 8.0 * moments, np.full(9, 10.0)  # of the rotor, from the microphone
+        x, z = (
+            -np.cos(lean) * ahead + np.sin(lean) * down,
+            -np.sin(lean) * ahead - np.cos(lean) * down,
+        )
+        along = tilted(observers=np.stack([x, 0.0 * x, z], axis=-1), broadband=True)
+        heard = {
+            name: np.asarray(mean_square(p)).sum(axis=1).mean()
+            for name, p in along.tones.parts.items()
+        }
+        heard["broadband"] = np.asarray(along.broadband.total)[4].sum()  # in the middle of a step
+        for name, power in heard.items():
+            # Hard ground doubles the pressure. Straight below there is next to no thickness noise.
+            loudest = by_step[name].max()
+            assert by_step[name][k] == pytest.approx(4.0 * power, rel=0.02, abs=1e-3 * loudest)
+
+
+def test_distance_elevation_and_doppler_of_a_rotor_that_leans_forward(flown_over):
+    lean = np.radians(10.0)
+    for step in flown_over.to_dict()["history"]:
+        emitted = step["time"] - step["distance"] / 340.294
+        way = np.array([-8.0 * emitted, -10.0])  # ahead and up
+        assert step["distance"] == pytest.approx(np.linalg.norm(way), rel=1e-9)
+        along_shaft = way @ [np.sin(lean), np.cos(lean)] / step["distance"]
+        assert step["elevation_deg"] == pytest.approx(np.degrees(np.arcsin(along_shaft)), abs=1e-6)
+        doppler = 1 / (1 - 8.0 / 340.294 * way[0] / step["distance"])
+        assert step["doppler"] == pytest.approx(doppler, rel=1e-9)

@@ -45,6 +45,8 @@ class Answer:
             "figure_of_merit": 0.5,
             "converged": True,
             "failure": None,
+            "hub_force": [0.0, 0.0, 1.5],
+            "hub_moment": [0.0, 0.0, -0.5],
             "deflection": None
             if asked.model.loads.elastic is None
             else {"r_over_R": [0.2, 1.0], "twist_deg": [0.0, 0.8]},

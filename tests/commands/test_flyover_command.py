@@ -51,6 +51,10 @@ def test_json_holds_the_flight_its_levels_and_their_history(
         ("--rpm 4200 --speed 8 --height -1", "height of flight must be within 0.001 ... 1000000 m"),
         ("--rpm 4200 --speed 8 --height 9 --microphone 9", "microphone must be between"),
         ("--rpm 4200 --speed 8 --height 9 --duration 1", "duration must be within 2 ... 1200 s"),
+        (
+            "--rpm 4200 --speed 8 --height 9 --incidence 170",
+            "incidence_deg must be within 0 ... 150 deg; it is 170",
+        ),
         ("--rpm 4200 --speed 8 --height 9 --wav a.mp3", "the file must end in .wav"),
         ("--rpm 4200 --speed 8 --height 9 --out no/a.csv", "there is no folder no"),
         ("--rpm 4200 --speed 8 --height 9 --full-scale 1", "--full-scale is of a sound file"),

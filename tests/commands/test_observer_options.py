@@ -81,6 +81,15 @@ def test_in_level_flight_a_grid_has_its_third_coordinate_up() -> None:
     assert placed.azimuth_deg == 0.0
 
 
+def test_at_an_incidence_level_flight_is_along_the_ground() -> None:
+    """Leaning forward by 20 deg: straight ahead is 20 deg above the rotor plane."""
+    placed = directions(listening_of(parse("--grid 5 0 0 --level"), 70.0).observers)
+    assert placed.elevation_deg == pytest.approx(20.0)
+    assert placed.azimuth_deg == pytest.approx(0.0)
+    upright = directions(listening_of(parse("--grid 5 0 0"), 70.0).observers)
+    assert upright.elevation_deg == pytest.approx(0.0)
+
+
 @pytest.mark.parametrize(
     ("arguments", "surroundings"),
     [

@@ -1,5 +1,7 @@
 """What tests of components share: small Problems, a small blade, a check of derivatives."""
 
+import dataclasses
+
 import numpy as np
 import openmdao.api as om
 import pytest
@@ -10,6 +12,7 @@ from propmdao.components import DifferentialEvolutionDriver, GeometryComp
 from propmdao.formats.propellers import load_propeller
 from propmdao.records.fidelity import Fidelity
 from propmdao.records.quantities import ASKED
+from propmdao.records.wake_law import WakeGrid
 
 #: Changes of every input along which its derivatives are checked: large enough for differences,
 #: small beside the input. An input that is missing here is an error of the check.
@@ -17,6 +20,7 @@ SCALES = {
     "rpm": 5.0,
     "thrust_required": 0.01,
     "speed": 0.03,
+    "incidence": 0.1,
     "density": 1e-2,
     "sound_speed": 1.0,
     "diameter": 1e-3,
@@ -93,6 +97,12 @@ def problem():
 def small():
     """Meshes that are too coarse to mean much and quick to differentiate."""
     return Fidelity(n_chordwise=2, n_spanwise=4, n_contour=5, n_surface_span=4, n_harmonics=2)
+
+
+@pytest.fixture(scope="session")
+def around(small):
+    """The same with few azimuths and a short wake, for flight at an incidence."""
+    return dataclasses.replace(small, n_azimuths=8, period_wake=WakeGrid(2.0, 2.0, 1.5, 40.0))
 
 
 @pytest.fixture(scope="session")

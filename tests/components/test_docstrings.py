@@ -36,22 +36,24 @@ def systems(propeller, small, polars):
     lattice = {"n_blades": 2, "fidelity": small}
     noise = {"observers": OBSERVERS, "fidelity": small}
     both = [lattice, {**lattice, "polars": polars}]
+    tilted = {**lattice, "tilted": True}
     geometry = {"propeller": propeller, "fidelity": small}
     options = {
         "GeometryComp": [
             {**geometry, "polars": polars},
             {**geometry, "camber": "design_lift_coefficient"},
         ],
-        "AerodynamicsComp": both,
-        "TrimmedAerodynamicsComp": both,
+        "AerodynamicsComp": [*both, tilted],
+        "TrimmedAerodynamicsComp": [*both, tilted],
         "RotationSpeedComp": both,
-        "AcousticsComp": [{**noise, "n_blades": 2, "n_loads": 3}],
+        "AcousticsComp": [{**noise, "n_blades": 2, "n_loads": 3, "n_azimuths": 8}],
         "BroadbandComp": [{**noise, "propeller": propeller}],
         "NoiseObjectiveComp": [{"shape": 3}],
         "PropellerGroup": [
             {**noise, "propeller": propeller, "broadband": True},
             {**geometry, "trim": "rpm", "camber": "design_lift_coefficient"},
             {**geometry, "trim_method": "two_point", "viscous": False},
+            {**geometry, "tilted": True},
         ],
     }
 
@@ -77,7 +79,9 @@ def names_of(system):
 
 
 SYSTEMS = sorted(
-    name for name in components.__all__ if issubclass(getattr(components, name), System)
+    name
+    for name in components.__all__
+    if isinstance(member := getattr(components, name), type) and issubclass(member, System)
 )
 
 

@@ -60,7 +60,8 @@ def propellers():
 def figures(sounds, levels, propellers):
     """Every kind of figure by name."""
     from propmdao.figures.blades import blade_comparison
-    from propmdao.figures.convergence import convergence
+    from propmdao.figures.designs.convergence import convergence
+    from propmdao.figures.designs.spectra_over_each_other import spectra_over_each_other
     from propmdao.figures.directivity import directivity, hemisphere_map
     from propmdao.figures.histories import level_history
     from propmdao.figures.pressure import blade_passage, pressure, sampled
@@ -83,6 +84,8 @@ def figures(sounds, levels, propellers):
             {"total": band_levels(sounds["before"], 3), "separation": BANDS * 0 + 20},
             {"total": ([125.0, 1000.0], [50.0, 45.0])},
         ),
+        "spectra_over_each_other": spectra_over_each_other(sounds, 3, "title"),
+        "spectra_of_tones_over_each_other": spectra_over_each_other(tones, 3),
         "pressure": pressure({name: blade_passage(s.tones, 3) for name, s in sounds.items()}),
         "pressure_of_records": pressure({"one": record, "two": record}),
         "directivity": directivity(ELEVATIONS, levels, MEASURED),

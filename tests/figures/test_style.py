@@ -15,12 +15,13 @@ from matplotlib.text import Text
 
 from propmdao.analysis.self_noise import BANDS_HZ
 from propmdao.figures.spectra import third_octaves
-from propmdao.figures.style import SOURCE_COLORS, line_colors, literal, page, save
+from propmdao.figures.style import SOURCE_COLORS, line_colors, line_styles, literal, page, save
 from propmdao.runtime.output_files import OutputError
 
 SOUNDS = [
     "narrowband_spectrum", "narrowband_spectrum_of_tones", "third_octaves", "pressure_of_records",
-    "directivity", "hemisphere_map", "level_history",
+    "directivity", "hemisphere_map", "level_history", "spectra_over_each_other",
+    "spectra_of_tones_over_each_other",
 ]  # fmt: skip
 ALL = [*SOUNDS, "blades", "convergence", "harmonic_spectrum", "pressure", "directivity_of_two"]
 # Tick labels of these lie on each other or include some beyond the ends of the axis.
@@ -67,7 +68,14 @@ def test_labels_do_not_lie_on_each_other(figures, name):
 
 @pytest.mark.parametrize(
     "name",
-    ["narrowband_spectrum", "third_octaves", "pressure", "pressure_of_records", "level_history"],
+    [
+        "narrowband_spectrum",
+        "third_octaves",
+        "pressure",
+        "pressure_of_records",
+        "level_history",
+        "spectra_over_each_other",
+    ],  # fmt: skip
 )
 def test_axes_have_names_with_units(figures, name):
     figure = figures[name]
@@ -99,6 +107,14 @@ def test_a_source_without_a_colour_of_its_own_has_none_of_the_others():
     given = line_colors(["thickness", "steady", "unsteady", "total"])
     assert len(set(given.values())) == 4
     assert not {given["steady"], given["unsteady"]} & set(SOURCE_COLORS.values())
+
+
+def test_lines_differ_in_style_as_well_as_in_colour():
+    sources = line_styles(["thickness", "loading", "broadband", "total"])
+    assert len(set(sources.values())) == 4 and sources["total"] == "-"
+    compared = line_styles(["old", "new", "newer", "newest"])
+    assert len(set(compared.values())) == 4
+    assert line_styles(["alone"]) == {"alone": "-"}
 
 
 @pytest.mark.parametrize("module", ["blades", "directivity", "of_analysis", "sound", "spectra"])

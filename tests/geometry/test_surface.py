@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import dataclasses
 from collections.abc import Callable
 
 import jax
@@ -171,8 +170,8 @@ def test_sharp_trailing_edge_has_panels_without_area_and_finite_derivatives(
         return (surface_panels(surface_nodes(b, span, 9)).vector_area ** 2).sum()
 
     gradient = jax.grad(total)(blade)
-    for field in dataclasses.fields(gradient):
-        assert np.isfinite(getattr(gradient, field.name)).all(), field.name
+    for name, slope in vars(gradient).items():
+        assert slope is None or np.isfinite(slope).all(), name
 
 
 def test_derivatives_agree_with_differences(

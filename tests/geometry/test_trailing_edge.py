@@ -48,6 +48,20 @@ def test_naca_0012_has_nearly_the_angle_of_the_report(blade):
     assert 14.0 < angle < 15.9
 
 
+def test_described_edges_are_what_was_described(straight):
+    propeller = dataclasses.replace(
+        straight("naca0012"), trailing_edge_over_R=0.004, trailing_edge_angle_deg=[4, 6, 8, 10, 12]
+    )
+    described = Blade.from_propeller(propeller)
+    span = span_interpolation(np.linspace(0.2, 1.0, 5), [0.7])
+    edge, angle = trailing_edge(described, span)
+    assert_allclose(edge, 0.004 / (span.smooth @ described.chord_over_R), rtol=1e-12)
+    assert_allclose(np.degrees(angle), 9.0, rtol=1e-12)
+    # A thicker section does not change a described edge.
+    thicker = dataclasses.replace(described, thickness_over_chord=jnp.full(5, 0.3))
+    assert_allclose(trailing_edge(thicker, span)[0], edge, rtol=1e-12)
+
+
 @pytest.mark.parametrize("radius", [0.001, 0.002, 0.004])
 def test_a_rounded_edge_has_the_angle_of_the_surfaces_ahead_of_it(blade, radius):
     """Half a circle on a plate: over its last 0.04 % of chord it is as steep as a wall."""
@@ -62,3 +76,11 @@ def test_a_rounded_edge_has_the_angle_of_the_surfaces_ahead_of_it(blade, radius)
 def test_derivatives(blade, assert_derivatives):
     span = span_interpolation(np.linspace(0.2, 1.0, 5), [0.3, 0.7, 0.95])
     assert_derivatives(lambda b: jnp.concatenate(trailing_edge(b, span)), blade)
+    described = dataclasses.replace(
+        blade, edge_over_R=jnp.full(5, 0.004), edge_angle=jnp.linspace(0.1, 0.2, 5)
+    )
+    chord_fixed = {"chord_over_R": blade.chord_over_R}  # the edge over chord is not linear in it
+    assert_derivatives(
+        lambda b: jnp.concatenate(trailing_edge(dataclasses.replace(b, **chord_fixed), span)),
+        described,
+    )

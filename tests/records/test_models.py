@@ -97,7 +97,15 @@ def test_blades_tripped_on_both_sides_are_tripped_in_the_noise(upper, lower, wor
     model = Model(
         LoadModel(transition=Transition(trip_upper=upper)), NoiseModel(SelfNoiseModel(word))
     )
-    completed = model.completed(Transition(n_crit=3.0, trip_lower=lower))
+    completed = model.completed(Transition(n_crit=3.0, trip_lower=lower), None)
     assert completed.loads.transition == Transition(3.0, upper, lower)
     assert completed.noise.broadband == SelfNoiseModel(trip)
-    assert completed.completed(Transition()) == completed  # a saved result, asked again
+    assert completed.completed(Transition(), None) == completed  # a saved result, asked again
+
+
+def test_the_tip_is_that_of_the_propeller_where_nothing_else_is_asked() -> None:
+    noisy = Model(noise=NoiseModel(SelfNoiseModel()))
+    for described, tip in ((None, "rounded"), ("square", "square"), ("rounded", "rounded")):
+        completed = noisy.completed(Transition(), described).noise.broadband
+        assert completed == SelfNoiseModel(tip=tip)
+    assert Model().completed(Transition(), "square").noise.broadband is None

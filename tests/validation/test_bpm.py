@@ -24,6 +24,16 @@ NOMINAL = np.array(
     [m * 10**k for k in range(2, 5) for m in (1, 1.25, 1.6, 2, 2.5, 3.15, 4, 5, 6.3, 8)]
 )
 
+#: Lowest band [Hz] and levels of figure 28d.
+FIGURE_28D = {
+    "pressure_side": (1000, [29.9, 32.6, 34.9, 37.2, 38.7, 38.7, 38.4, 36.1, 33.9, 31.2]),
+    "suction_side": (
+        200,
+        [43.8, 46.4, 48.3, 50.6, 51.4, 51.4, 49.9, 48.1, 45.4, 42.8, 39.8, 35.7, 30.0],
+    ),
+    "separation": (250, [31.3, 41.9, 48.7, 53.7, 54.8, 53.7, 49.2, 43.2, 32.2]),
+}
+
 
 def table(path):
     return np.genfromtxt(path, delimiter=",", names=True)
@@ -71,6 +81,18 @@ def test_figures(reference_data, figure, curve, mechanism, mean, spread):
     error = figure_error(reference_data / "bpm", figure, curve, mechanism)
     assert mean[0] < error.mean() < mean[1]
     assert np.abs(error).max() < spread
+
+
+def test_just_below_the_stall_all_is_the_reports():
+    # Figure 28d, 31.7 m/s and 6.7 deg, 0.1 deg below the switch; read from print.
+    values = (0.1016, 0.4572, 31.7, 0.11693705988362009, 0.0, 0.0)
+    air = Air(density=1.0, sound_speed=340.46, dynamic_viscosity=1.4529e-5)
+    for name, (first, read) in FIGURE_28D.items():
+        start = int(np.argmin(np.abs(NOMINAL - first)))
+        got = levels(NOMINAL[start : start + len(read)], values, air, 1.22, "heavy")
+        error = got[name] - read
+        assert np.abs(error).max() < 0.6
+        assert abs(error.mean()) < 0.4
 
 
 def test_the_figure_of_bluntness_is_that_of_a_higher_speed(reference_data):

@@ -80,7 +80,7 @@ def test_third_octaves_with_the_thrust_of_the_wind_tunnel(measured):
     low, high = np.searchsorted(BANDS_HZ, (490, 10100))
     found = error(heard[:, low:high], measured)
     assert 1.3 < found[0] < 2.0
-    assert 2.8 < found[1] < 3.4
+    assert 3.2 < found[1] < 3.9
 
 
 def of_strips(strips, angle=0.0, trip="none"):
@@ -120,7 +120,7 @@ def test_tripped_boundary_layers_make_up_for_missing_thrust(strips, measured):
     # Nobody tripped the blades; tripped ones would be louder where the measured thrust is met.
     found = error(of_strips(strips, trip="heavy"), measured)
     assert 2.6 < found[0] < 3.2
-    assert 4.0 < found[1] < 4.7
+    assert 4.5 < found[1] < 5.3
 
 
 @pytest.mark.parametrize(("degrees", "low", "high"), [(-1.0, -2.9, -1.8), (1.0, 2.0, 3.2)])
@@ -141,5 +141,5 @@ def test_geometric_angle_from_zero_lift_is_too_loud(hover, strips, measured):
     angle = np.asarray(geometric - strips.section.angle_of_attack)
     assert angle.mean() > np.radians(1.0)
     found = error(of_strips(strips, angle), measured)
-    assert 5.0 < found[0] < 6.0
-    assert 4.5 < found[1] < 5.5
+    assert 5.6 < found[0] < 6.5
+    assert 5.3 < found[1] < 6.1

@@ -34,7 +34,7 @@ class Radiation:
 def radiation(
     chordwise: ArrayLike, spanwise: ArrayLike, normal: ArrayLike, mach: ArrayLike
 ) -> Radiation:
-    """Directivity of a trailing edge toward an observer.
+    """Directivity of the trailing edge of an airfoil at rest in a stream, as in a wind tunnel.
 
     Parameters
     ----------
@@ -54,13 +54,48 @@ def radiation(
     Brooks, Pope, Marcolini, NASA RP-1218, equations B1 and B2, with theta_e and phi_e in cosines.
     """
     x, y, z = jnp.asarray(chordwise), jnp.asarray(spanwise), jnp.asarray(normal)
+    cos_theta = x / jnp.sqrt(x * x + y * y + z * z)
+    moving = at_least(1 + mach * cos_theta, _LEAST_CONVECTION)
+    sliding = at_least(1 + (1 - _CONVECTION) * mach * cos_theta, _LEAST_CONVECTION)
+    return _convected(x, y, z, moving * sliding**2, moving**4)
+
+
+def moving_radiation(
+    chordwise: ArrayLike, spanwise: ArrayLike, normal: ArrayLike, approach: ArrayLike
+) -> Radiation:
+    """Directivity of a trailing edge that moves through air at rest, as on a rotor.
+
+    Parameters
+    ----------
+    chordwise, spanwise, normal : array
+        Components of the vector from the trailing edge, at its place at emission, to the observer:
+        along the chord (from leading to trailing edge), along the span, and normal to both [m].
+    approach : array
+        1 - M cos xi, with the Mach number M at which the edge moves through the undisturbed air and
+        the angle xi between this motion and the way to the observer.
+
+    Returns
+    -------
+    Radiation
+        Directivities, of the shape to which the arguments broadcast.
+
+    References
+    ----------
+    T. F. Brooks, C. L. Burley, AIAA 2001-2210, equations 19 and 20: both directivities carry
+    (1 - M cos xi)^-4.
+    """
+    x, y, z = jnp.asarray(chordwise), jnp.asarray(spanwise), jnp.asarray(normal)
+    amplification = at_least(approach, _LEAST_CONVECTION) ** 4
+    return _convected(x, y, z, amplification, amplification)
+
+
+def _convected(x: Array, y: Array, z: Array, high: Array, low: Array) -> Radiation:
+    """Directivities of an edge over the convective factors of high and low frequency."""
     across = y * y + z * z
     r2 = x * x + across
     cos_theta = x / jnp.sqrt(r2)
     sin2_phi = z * z / (across + _ON_THE_EDGE * r2)
-    moving = at_least(1 + mach * cos_theta, _LEAST_CONVECTION)
-    sliding = at_least(1 + (1 - _CONVECTION) * mach * cos_theta, _LEAST_CONVECTION)
     return Radiation(
-        high=(1 - cos_theta) * sin2_phi / (moving * sliding**2 * r2),  # 2 sin^2(theta / 2)
-        low=(z * z / r2) / (moving**4 * r2),  # sin^2 theta sin^2 phi = z^2 / r^2
+        high=(1 - cos_theta) * sin2_phi / (high * r2),  # 2 sin^2(theta / 2)
+        low=(z * z / r2) / (low * r2),  # sin^2 theta sin^2 phi = z^2 / r^2
     )

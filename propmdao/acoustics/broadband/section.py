@@ -22,7 +22,7 @@ from propmdao.acoustics.broadband.smooth import smooth_step
 from propmdao.records.air import Air
 from propmdao.records.pytrees import record
 
-_STALL = 1.0  # half width of the change from attached to separated flow [deg]
+_STALL = 0.25  # half width of the change from attached to separated flow [deg]
 _SHARP = 1e-9  # trailing-edge thickness over chord that a logarithm can take
 
 
@@ -157,7 +157,8 @@ def turbulent_strip(section: Section, layer: BoundaryLayer, air: Air) -> Turbule
         a_r=turbulent_spectra.SHAPE_A.interpolation(reynolds),
         a_r_stalled=turbulent_spectra.SHAPE_A.interpolation(3 * reynolds),
         b_r=turbulent_spectra.SHAPE_B.interpolation(reynolds),
-        stalled=smooth_step(degrees - turbulent_spectra.stall_angle(mach), _STALL),
+        # Up to the report's switch all is the report's; the change lies beyond it.
+        stalled=smooth_step(degrees - turbulent_spectra.stall_angle(mach) - _STALL, _STALL),
     )
 
 

@@ -128,8 +128,8 @@ def trailing_edge_noise(
 
     Notes
     -----
-    Around the stall the turbulent mechanisms change over within 1 deg to either side, where the
-    report steps. Beyond it the report has no pressure and suction side.
+    At the stall the report steps; here the turbulent mechanisms change over within the next half a
+    degree. Beyond it the report has no pressure and suction side.
     """
     strip = turbulent_strip(section, layer, air)
     laminar = laminar_strip(section, layer, air)
@@ -172,8 +172,8 @@ def tip_noise(
     frequency_hz : array
         Mid-band frequencies at the source, positive [Hz].
     section : Section
-        Section at the tip, of which chord, speed and angle from zero lift, reduced by the tip's own
-        inflow, count.
+        Section near the tip, of which chord, speed and angle from zero lift, reduced by the tip's
+        own inflow, count.
     radiated : Radiation
         Directivity of the tip toward the observers, by `radiation`; only `high` counts.
     air : Air

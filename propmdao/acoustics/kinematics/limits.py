@@ -18,14 +18,16 @@ def require_subsonic_tip(radius: float, state: RotorState) -> None:
     radius : float
         Tip radius [m].
     state : RotorState
-        Rotation speed, flight speed along the axis and air; not traceable by JAX.
+        Rotation speed, flight speed, incidence and air; not traceable by JAX.
 
     Raises
     ------
     ValueError
         If the relative tip Mach number is 1 or more: Formulation 1A is singular there.
     """
-    mach = np.hypot(state.rotation_speed * radius, state.speed) / state.air.sound_speed
+    # The fastest a blade gets: at an incidence, on the advancing side.
+    advancing = state.rotation_speed * radius + float(state.edgewise_speed)
+    mach = np.hypot(advancing, float(state.axial_speed)) / state.air.sound_speed
     if not mach < 1:
         raise ValueError(
             f"relative tip Mach number must be below 1 for Formulation 1A; it is {mach:.3f} "

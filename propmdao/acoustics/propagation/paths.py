@@ -23,7 +23,6 @@ from propmdao.acoustics.propagation.reflection import (
 from propmdao.acoustics.signals import Tones
 from propmdao.records.air import require_known_air
 from propmdao.records.listening import Surroundings
-from propmdao.records.pytrees import Scalar
 from propmdao.records.states import RotorState
 
 _ON_GROUND = 1e-9  # m: rounding of directions
@@ -31,7 +30,9 @@ _ON_GROUND = 1e-9  # m: rounding of directions
 Floats = NDArray[np.float64]
 
 
-def sound_paths(positions: ArrayLike, surroundings: Surroundings) -> Floats:
+def sound_paths(
+    positions: ArrayLike, surroundings: Surroundings, incidence_deg: float = 0.0
+) -> Floats:
     """Ends of the ways from the rotor to its observers: the observers and their mirror images.
 
     Parameters
@@ -40,6 +41,8 @@ def sound_paths(positions: ArrayLike, surroundings: Surroundings) -> Floats:
         Positions from the rotor centre, in its axes [m].
     surroundings : Surroundings
         Ground around the rotor, or none.
+    incidence_deg : float
+        Angle between the shaft and the direction of flight [deg].
 
     Returns
     -------
@@ -55,7 +58,8 @@ def sound_paths(positions: ArrayLike, surroundings: Surroundings) -> Floats:
     ground = surroundings.ground
     if ground is None or isinstance(ground, str):
         return x[None]
-    height = x @ np.asarray(surroundings.up) + ground
+    up = surroundings.up(incidence_deg)
+    height = x @ np.asarray(up) + ground
     below = np.flatnonzero(height < -_ON_GROUND)
     if below.size:
         k = below[0]
@@ -63,7 +67,7 @@ def sound_paths(positions: ArrayLike, surroundings: Surroundings) -> Floats:
             f"observer {k + 1} is {-height[k]:.4g} m below the ground, which is {ground:g} m below"
             " the rotor centre"
         )
-    return np.stack([x, np.asarray(mirrored(x, ground, surroundings.up))])
+    return np.stack([x, np.asarray(mirrored(x, ground, up))])
 
 
 def tones_by_paths(
@@ -78,7 +82,7 @@ def tones_by_paths(
     paths : (n_ways, n_observers, 3) array
         Ways by `sound_paths` [m].
     state : RotorState
-        Flight along the axis, and the air; where it absorbs, JAX cannot trace the air.
+        Flight, and the air; where it absorbs, JAX cannot trace the air.
     surroundings : Surroundings
         Ground and air as they were for the paths.
 
@@ -94,7 +98,8 @@ def tones_by_paths(
     """
     if surroundings.absorption:
         require_known_air(state.air)
-        distance, doppler = way_flying_along(jnp.asarray(paths).reshape(-1, 3), state.mach)
+        mach = state.velocity / state.air.sound_speed
+        distance, doppler = way_flying_along(jnp.asarray(paths).reshape(-1, 3), mach)
         tones = absorb_tones(tones, distance, state.air, doppler)
     n_ways, n, _ = np.shape(paths)
     if n_ways == 1:
@@ -120,7 +125,7 @@ def bands_by_paths(
     paths : (n_ways, n_observers, 3) array
         Ways by `sound_paths` [m].
     state : RotorState
-        Flight along the axis, and the air; where it absorbs, JAX cannot trace the air.
+        Flight, and the air; where it absorbs, JAX cannot trace the air.
     surroundings : Surroundings
         Ground and air as they were for the paths.
 
@@ -140,7 +145,7 @@ def bands_by_paths(
     """
     x, f = jnp.asarray(paths), jnp.asarray(band_hz, float)
     power = jnp.asarray(mean_square).reshape(*x.shape[:2], f.size)
-    distance, doppler = way_flying_along(x, state.mach)
+    distance, doppler = way_flying_along(x, state.velocity / state.air.sound_speed)
     if surroundings.absorption:
         require_known_air(state.air)
         power = absorb(power, f * doppler[..., None], distance, state.air)
@@ -150,15 +155,15 @@ def bands_by_paths(
     return bands_with_reflection(power[0], power[1], f, delay)
 
 
-def way_flying_along(positions: ArrayLike, mach: Scalar) -> tuple[Array, Array]:
-    """Way of the sound to observers that fly along with its source, along +z.
+def way_flying_along(positions: ArrayLike, mach: ArrayLike) -> tuple[Array, Array]:
+    """Way of the sound to observers that fly along with its source.
 
     Parameters
     ----------
     positions : (..., 3) array
         Positions from the source, observer and source taken at the same time [m].
-    mach : float
-        Mach number of the flight, below 1.
+    mach : (3,) array
+        Velocity of the flight over the speed of sound, below 1.
 
     Returns
     -------
@@ -168,5 +173,7 @@ def way_flying_along(positions: ArrayLike, mach: Scalar) -> tuple[Array, Array]:
         Frequency in the air at rest over that which the observers, who move like the source, hear.
     """
     x = jnp.asarray(positions, float)
-    d = emission_distance(mach * x[..., 2], jnp.sum(x**2, axis=-1), mach**2)
-    return d, 1 / (1 - mach * (x[..., 2] / d + mach))
+    m = jnp.asarray(mach, float)
+    ahead, m2 = x @ m, m @ m
+    d = emission_distance(ahead, jnp.sum(x**2, axis=-1), m2)
+    return d, 1 / (1 - ahead / d - m2)

@@ -2,12 +2,15 @@
 
 The Fourier integral over emission time of `formulation1a.tones` with the general kernel of
 `advanced_time`: the shaft may be tilted against the flight, the loads may change around the turn
-and the blades may stand at any azimuths. Observers fly along.
+and the blades may stand at any azimuths. Observers fly along. `rotor_tones` takes any such rotor;
+`tilted_tones` takes one with equally spaced blades, and can be traced and differentiated.
 """
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from functools import partial
+from typing import Any
 
 import jax
 import jax.numpy as jnp
@@ -20,9 +23,19 @@ from propmdao.acoustics.kinematics.motion import Poses, poses, rotation, transla
 from propmdao.acoustics.signals import Tones
 from propmdao.acoustics.sources.harmonic_sums import cos_sin, harmonic_sums
 from propmdao.acoustics.sources.kernels import TONAL_SOURCES, Kernel, emission
-from propmdao.acoustics.sources.moving_sources import AperiodicLoads, Sources, frame_sources
+from propmdao.acoustics.sources.moving_sources import (
+    AperiodicLoads,
+    Sources,
+    UnsteadySources,
+    frame_sources,
+    sample,
+    unsteady_loads,
+)
 from propmdao.acoustics.sources.rotors import Rotor
 from propmdao.records.air import Air
+from propmdao.records.listening import Floats
+from propmdao.records.loads import PeriodicLoads
+from propmdao.records.panels import Panels
 from propmdao.records.pytrees import Scalar
 from propmdao.records.states import RotorState
 from propmdao.runtime.compilation import compiled
@@ -87,9 +100,7 @@ def rotor_tones(
     blades = np.exp(-1j * np.outer(orders, np.atleast_1d(rotor.azimuths))).sum(axis=1)
     flight = (translation(velocity=v), rotation((0, 0, 1), rate=omega))
     for name, n_azimuths in rotor.azimuths_held.items():
-        # The integrand holds harmonics up to n (1 + M), some more in the near field, and those of
-        # the loads.
-        n = 2 * step * n_harmonics + 16 + n_azimuths
+        n = _n_emissions(step, n_harmonics, n_azimuths)
         tau = 2 * np.pi / omega * np.arange(n) / n
         blade = _fourier_integral(
             TONAL_SOURCES[name].kernel,
@@ -106,6 +117,119 @@ def rotor_tones(
         parts[name] = TONAL_SOURCES[name].scale(air) * (blade * blades)
     frequency_hz = jnp.asarray(orders * omega / (2 * np.pi))
     return Tones(frequency_hz, parts).of_positive_frequency
+
+
+@partial(compiled, static_argnames=("n_blades", "n_harmonics"))
+def tilted_tones(
+    panels: Panels,
+    loads: PeriodicLoads,
+    n_blades: int,
+    state: RotorState,
+    observers: ArrayLike,
+    n_harmonics: int,
+) -> Tones:
+    """Tones of a rotor in flight at an incidence, heard by observers that fly along with it.
+
+    What `rotor_tones` gives for equally spaced blades, as a function of traced arguments.
+
+    Parameters
+    ----------
+    panels : Panels
+        Closed surface of blade 1.
+    loads : PeriodicLoads
+        Forces of blade 1 on the fluid at its azimuths.
+    n_blades : int
+        Number of equally spaced blades (static).
+    state : RotorState
+        Rotation speed about +z, speed of the rotor and the observers, incidence, and the
+        undisturbed air. At zero rotation speed nothing is periodic: all amplitudes are zero.
+    observers : (n_observers, 3) array
+        Positions from the rotor centre, moving with it [m].
+    n_harmonics : int
+        Number of harmonics of the blade-passage frequency (static).
+
+    Returns
+    -------
+    Tones
+        Amplitudes of thickness and loading noise [Pa].
+
+    Notes
+    -----
+    The advancing tip must be slower than sound: see `require_subsonic_tip`, for a traced function
+    cannot raise.
+    """
+    turning = jnp.asarray(state.rotation_speed) != 0.0
+    omega = jnp.where(turning, state.rotation_speed, 1.0)
+    velocity = jnp.stack(
+        [jnp.asarray(u, float) for u in (state.edgewise_speed, 0.0, state.axial_speed)]
+    )
+    n_loads = loads.force.shape[0]
+
+    def heard(
+        name: str, n_azimuths: int, sources_at: Callable[[Floats], Panels | UnsteadySources]
+    ) -> Array:
+        n = _n_emissions(n_blades, n_harmonics, n_azimuths)
+        psi = 2 * np.pi * np.arange(n) / n
+        tau = jnp.asarray(psi) / omega
+        return n_blades * _fourier_integral(
+            TONAL_SOURCES[name].kernel,
+            frame_sources(sources_at(psi)),
+            _turning_and_flying(psi, tau, omega, velocity),
+            tau,
+            jnp.asarray(observers, float),
+            velocity,
+            omega,
+            state.air.sound_speed,
+            n_blades,
+            n_harmonics,
+        )
+
+    def forces(psi: Floats) -> UnsteadySources:
+        # The spline is linear in the forces that it goes through.
+        angles = 2 * np.pi * np.arange(n_loads) / n_loads
+        value, slope, _ = sample(np.eye(n_loads), angles, psi, 2 * np.pi)
+        force, rate = (
+            jnp.tensordot(jnp.asarray(of_table), loads.force, axes=1) for of_table in (value, slope)
+        )
+        return unsteady_loads(loads.position, force, omega * rate)
+
+    amplitudes = {
+        "thickness": heard("thickness", 0, lambda psi: panels),
+        "loading": heard("loading", n_loads, forces),
+    }
+    parts = {
+        name: jnp.where(turning, TONAL_SOURCES[name].scale(state.air) * p, 0.0)
+        for name, p in amplitudes.items()
+    }
+    orders = n_blades * np.arange(1, n_harmonics + 1)
+    frequency_hz = jnp.where(turning, omega, 0.0) / (2 * np.pi) * orders
+    return Tones(frequency_hz, parts).of_positive_frequency
+
+
+def _n_emissions(step: int, n_harmonics: int, n_azimuths: int) -> int:
+    """Azimuths of the Fourier integral for loads that are known at so many.
+
+    The integrand holds harmonics up to n (1 + M), some more in the near field, and those of the
+    loads.
+    """
+    return 2 * step * n_harmonics + 16 + n_azimuths
+
+
+def _turning_and_flying(psi: Floats, tau: Array, omega: Array, velocity: Array) -> Poses:
+    """Poses of a frame that turns about +z and flies along, times last; traced."""
+    cosine, sine, none = np.cos(psi), np.sin(psi), np.zeros_like(psi)
+    matrix = np.array([[cosine, -sine, none], [sine, cosine, none], [none, none, none + 1.0]])
+    slope = np.array([[-sine, -cosine, none], [cosine, -sine, none], [none, none, none]])
+    in_plane = np.array([[cosine, -sine, none], [sine, cosine, none], [none, none, none]])
+    traced: tuple[Any, ...] = (
+        matrix,
+        omega * slope,
+        -(omega**2) * in_plane,
+        velocity[:, None] * tau,
+        jnp.broadcast_to(velocity[:, None], (3, psi.size)),
+        np.zeros((3, psi.size)),
+    )
+    return Poses(*traced)
 
 
 def symmetry(azimuths: ArrayLike) -> int:
@@ -151,7 +275,9 @@ def _fourier_integral(
     azimuth = 2 * np.pi * np.arange(tau.size) / tau.size
     turned = np.exp(1j * step * np.outer(azimuth, np.arange(1, n_harmonics + 1)))
 
+    @jax.checkpoint  # reverse derivatives recompute one observer at one azimuth at a time
     def amplitudes_at(observer: Array) -> Array:
+        @jax.checkpoint
         def strength_and_phase(j: Array) -> tuple[Array, Array, Array]:
             def now(q: Array) -> Array:  # what does not change has one time only
                 return jax.lax.dynamic_slice_in_dim(q, j % q.shape[2], 1, axis=2)

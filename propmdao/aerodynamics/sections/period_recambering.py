@@ -28,9 +28,12 @@ from propmdao.aerodynamics.sections.recambering import SectionStates
 from propmdao.records.pytrees import record
 
 _TOLERANCE = 1.0e-9  # in the lift coefficient
-_MAX_STEPS = 100
 _LONGEST_STEP = np.radians(15.0)
-_FIRST_TIME = 0.5  # first pseudo-time step, in times in which a thin section settles
+# First pseudo-time step, in times in which a thin section settles, of one attempt after the other,
+# the steps of an attempt, and how much faster the time falls than it grows.
+_FIRST_TIMES = 2.0, 0.5, 0.1
+_MAX_STEPS = 60
+_FALL, _LEAST_FALL = 1.5, 0.05
 # Share of the tangential speed at which lattice and motion count half each for the angle of attack,
 # and half of the width over which one takes over from the other.
 _REVERSED, _BLEND = 0.2, 0.1
@@ -126,14 +129,15 @@ def period_states(
     return states_of(alpha, cd), states_of(flow.motion_angle, moving_cd)
 
 
-def solve_period_recambering(flow: PeriodFlow, laws: SectionLaws) -> Array:
+def solve_period_recambering(flow: PeriodFlow, laws: SectionLaws, start: Array) -> Array:
     """Recambering that brings lattice and polars to the same lift at every azimuth.
 
     Newton's method in pseudo-time: as if every recambering moved towards its root at the rate of a
     thin section, dx/dt = -R / (2 pi), in implicit steps that grow as the residual falls (switched
     evolution relaxation, Mulder and van Leer, J. Comput. Phys. 59, 1985). Past stall, plain Newton
     steps and those of a line search end in circles, for the residual has minima that are no roots.
-    It begins at no recambering, so that the answer does not depend on what was computed before.
+    Where the residual rises again, the steps shrink faster than they had grown, so that a circle
+    does not last; and where that does not help, another attempt begins with shorter ones.
     Derivatives are those of the implicit function.
 
     Parameters
@@ -142,6 +146,9 @@ def solve_period_recambering(flow: PeriodFlow, laws: SectionLaws) -> Array:
         Strips of the lattice at all azimuths.
     laws : SectionLaws
         Polars of the strips, with a leading axis of azimuths.
+    start : (n_azimuths, ns) array
+        Recambering at which the first attempt begins, 0 where nothing is known; all others begin
+        at 0.
 
     Returns
     -------
@@ -160,23 +167,33 @@ def solve_period_recambering(flow: PeriodFlow, laws: SectionLaws) -> Array:
     def norm(missing: Array) -> Array:
         return jnp.sqrt(((weight * missing) ** 2).mean())
 
+    def at(delta: Array) -> tuple[Array, Array, Array]:
+        return delta, *_residual_and_slope(fixed_flow, fixed_laws, delta)
+
     def unfinished(state: _Newton) -> Array:
         largest = jnp.abs(weight * state.missing).max()
-        return (state.n_trials < _MAX_STEPS) & ~(largest <= _TOLERANCE)
+        attempts_left = state.n_trials < _MAX_STEPS * len(_FIRST_TIMES)
+        return attempts_left & ~(largest <= _TOLERANCE)
 
     def step(state: _Newton) -> _Newton:
-        time = _FIRST_TIME * norm(first) / norm(state.missing)
-        inertia = 2.0 * jnp.pi / time * jnp.diag(fixed_flow.attached.ravel())
+        inertia = 2.0 * jnp.pi / state.time * jnp.diag(fixed_flow.attached.ravel())
         change = jnp.linalg.solve(state.slope + inertia, state.missing.ravel()).reshape(shape)
         # Each strip by itself: one that has just stalled holds up no other.
         delta = state.recambering - jnp.clip(change, -longest, longest)
-        return _Newton(
-            state.n_trials + 1, delta, *_residual_and_slope(fixed_flow, fixed_laws, delta)
-        )
+        following = state.n_trials + 1
+        attempt = following // _MAX_STEPS
+        afresh = following % _MAX_STEPS == 0
+        delta, missing, slope = at(jnp.where(afresh, 0.0, delta))
+        fall = norm(state.missing) / norm(missing)
+        time = state.time * jnp.where(fall > 1.0, fall, jnp.maximum(fall**_FALL, _LEAST_FALL))
+        time = jnp.where(afresh, jnp.asarray(_FIRST_TIMES)[attempt], time)
+        return _Newton(following, delta, missing, slope, time)
 
     none = jnp.zeros(shape)
-    first, slope = _residual_and_slope(fixed_flow, fixed_laws, none)
-    end = jax.lax.while_loop(unfinished, step, _Newton(0, none, first, slope))
+    begin = at(jax.lax.stop_gradient(start))
+    # What is near the root already moves on as if it had begun at no recambering.
+    time = _FIRST_TIMES[0] * norm(_residual(fixed_flow, fixed_laws, none)) / norm(begin[1])
+    end = jax.lax.while_loop(unfinished, step, _Newton(0, *begin, time))
     # One more Newton step, in which alone the arguments count: its slope is that of the solution.
     delta, slope = jax.lax.stop_gradient((end.recambering, end.slope))
     missing = _residual(flow, laws, delta)
@@ -190,6 +207,7 @@ class _Newton(NamedTuple):
     recambering: Array
     missing: Array
     slope: Array
+    time: Array
 
 
 def _beyond_thin(laws: SectionLaws, alpha: Array) -> tuple[Array, Array]:

@@ -10,6 +10,8 @@ needs of it (`propmdao.aerodynamics.trim.Solver`).
 
 from __future__ import annotations
 
+from functools import partial
+
 import jax.numpy as jnp
 from jax import Array
 
@@ -28,7 +30,7 @@ from propmdao.aerodynamics.solutions.result import (
     sections_agree,
     unless_still,
 )
-from propmdao.aerodynamics.solutions.roots import at_root, decreasing_root
+from propmdao.aerodynamics.solutions.roots import Guess, at_root, decreasing_root, empty
 from propmdao.aerodynamics.vortices.cores import core_radius, middles
 from propmdao.aerodynamics.wakes.helical import helical_wake
 from propmdao.aerodynamics.wakes.momentum import (
@@ -165,15 +167,17 @@ def solve(case: RotorCase, thrust_guess: Scalar = 0.0) -> RotorLoads:
         tip_speed = state.rotation_speed * flow.case.rotor.radius
         known = induced_velocity(flow, thrust_guess)
 
-        def trial(w: Array) -> tuple[Array, LatticeLoads]:
+        def trial(w: Array, _: LatticeLoads) -> tuple[Array, LatticeLoads]:
             loads = evaluate(params, w)
             return residual(params, w, loads), loads
+
+        guess = jnp.where(thrust_guess == 0.0, _GUESS * tip_speed, known)
 
         w, loads = decreasing_root(
             trial,
             lowest_induced_velocity(state, flow.case.rotor.radius),
             tip_speed,
-            jnp.where(thrust_guess == 0.0, _GUESS * tip_speed, known),
+            Guess(guess, empty(partial(evaluate, params), guess)),
             _TOLERANCE,
         )
         return w, loads, None

@@ -1,7 +1,7 @@
 """Periodic lattice: loads of a rotor whose shaft stands at an angle to the flight.
 
 Around a turn the air meets the blade ever differently, and every turn is like the one before. So
-the circulation of all azimuths is one problem (`period_loads`), in a wake that the free stream and
+the circulation of all azimuths is one problem (`period.loads`), in a wake that the free stream and
 the induced velocity w carry (`wakes.skewed`); w follows from the mean thrust by Glauert's momentum
 theory of the tilted disk, as in axial flight. Without incidence this is the steady solution.
 
@@ -11,20 +11,24 @@ needs of it (`propmdao.aerodynamics.trim.Solver`).
 
 from __future__ import annotations
 
+import dataclasses
+from functools import partial
+
 import jax.numpy as jnp
 from jax import Array
 
-from propmdao.aerodynamics.lattice.rings import BOUND_CORE
 from propmdao.aerodynamics.solutions.case import RotorCase
-from propmdao.aerodynamics.solutions.period_lattice import (
-    PeriodLattice,
-    PeriodWake,
-    period_lattice,
+from propmdao.aerodynamics.solutions.period.flow import (
+    TiltedFlow,
+    flow_at,
+    induced_velocity,
+    loads_at,
+    mean_thrust,
 )
-from propmdao.aerodynamics.solutions.period_loads import (
+from propmdao.aerodynamics.solutions.period.guess import bracket, coarse_root, momentum_less
+from propmdao.aerodynamics.solutions.period.loads import (
     PeriodBladeLoads,
     azimuths_of,
-    period_loads,
     tilted_onset,
 )
 from propmdao.aerodynamics.solutions.point_sums import strip_loads
@@ -33,129 +37,16 @@ from propmdao.aerodynamics.solutions.result import (
     sections_agree,
     unless_still,
 )
-from propmdao.aerodynamics.solutions.roots import at_root, decreasing_root
-from propmdao.aerodynamics.vortices.cores import core_radius, middles
-from propmdao.aerodynamics.wakes.helical import helical_wake
-from propmdao.aerodynamics.wakes.history import shedding_delay
-from propmdao.aerodynamics.wakes.momentum import (
-    lowest_induced_velocity,
-    momentum_induced_velocity,
-    within_momentum_theory,
-)
-from propmdao.aerodynamics.wakes.skewed import sideways_drift
+from propmdao.aerodynamics.solutions.roots import at_root, decreasing_root, empty
+from propmdao.aerodynamics.wakes.momentum import within_momentum_theory
 from propmdao.records.loads import PeriodicLoads
-from propmdao.records.pytrees import Scalar, record
+from propmdao.records.pytrees import Scalar
 from propmdao.runtime.compilation import compiled
 
-_TOLERANCE = 1.0e-8  # relative, in the induced velocity
-_GUESS = 0.05  # of the tip speed
-
-
-@record
-class TiltedFlow:
-    """A case with the part of its lattice that no operating point changes.
-
-    Attributes
-    ----------
-    case : RotorCase
-        Case to solve; its rotation speed is not 0.
-    lattice : PeriodLattice
-        Lattice of blade 1.
-    """
-
-    case: RotorCase
-    lattice: PeriodLattice
-
-    def turning(self, rotation_speed: Scalar) -> TiltedFlow:
-        """The same flow at another rotation speed [rad/s]."""
-        return TiltedFlow(self.case.turning(rotation_speed), self.lattice)
-
-    @property
-    def n_azimuths(self) -> int:
-        """Azimuths of the period: at least those asked for, and a multiple of the blades."""
-        n_blades = self.case.rotor.n_blades
-        return n_blades * -(-self.case.n_azimuths // n_blades)
+_TOLERANCE = 1.0e-9  # relative, in the induced velocity
 
 
 _Params = tuple[TiltedFlow, Array]  # with the thrust guessed
-
-
-def flow_at(case: RotorCase) -> TiltedFlow:
-    """Prepare a case by the part of its lattice that no operating point changes.
-
-    Parameters
-    ----------
-    case : RotorCase
-        Case to solve.
-
-    Returns
-    -------
-    TiltedFlow
-        The case with its lattice, all numbers as floats.
-    """
-    case = case.in_floats()
-    return TiltedFlow(case, period_lattice(case.rotor))
-
-
-def induced_velocity(flow: TiltedFlow, thrust: Scalar) -> Array:
-    """Induced velocity at the disk by momentum theory.
-
-    Parameters
-    ----------
-    flow : TiltedFlow
-        Case with its lattice.
-    thrust : float
-        Mean thrust of all blades [N].
-
-    Returns
-    -------
-    float
-        Induced velocity along the shaft [m/s].
-    """
-    return momentum_induced_velocity(thrust, flow.case.state, flow.case.rotor.radius)
-
-
-def loads_at(flow: TiltedFlow, induced_velocity: Scalar) -> PeriodBladeLoads:
-    """Loads of blade 1 in the wake that a given induced velocity transports.
-
-    Parameters
-    ----------
-    flow : TiltedFlow
-        Case with its lattice.
-    induced_velocity : float
-        Induced velocity at the disk [m/s].
-
-    Returns
-    -------
-    PeriodBladeLoads
-        Loads of blade 1 at the azimuths.
-    """
-    case, lattice, n = flow.case, flow.lattice, flow.n_azimuths
-    rotor, state = case.rotor, case.state
-    edge, ages = lattice.lattice.rings.corner[-1], jnp.asarray(case.wake.ages)
-
-    def core(at: Array) -> Array:
-        viscosity, initial = state.air.kinematic_viscosity, BOUND_CORE * rotor.radius
-        return core_radius(at, state.rotation_speed, viscosity, initial)
-
-    azimuths = jnp.asarray(azimuths_of(n))
-    onset = tilted_onset(lattice.lattice, state, induced_velocity, azimuths)
-    step = onset.mean_speed * ages[1] / state.rotation_speed
-    delay = shedding_delay(lattice.last_panel, step) / onset.mean_speed * state.rotation_speed
-    wake = PeriodWake(
-        nodes=helical_wake(edge, case.wake, rotor, state, induced_velocity),
-        drift=sideways_drift(ages, azimuths, state),
-        ages=ages,
-        delay=delay,
-        trailing_core=core(middles(ages)),
-        shed_core=core(ages[:-1]),
-    )
-    return period_loads(lattice, wake, onset, state.rotation_speed, state.air, case.sections)
-
-
-def mean_thrust(flow: TiltedFlow, loads: PeriodBladeLoads) -> Array:
-    """Mean thrust of all blades from the loads of one [N]."""
-    return flow.case.rotor.n_blades * loads.hub_force[:, 2].mean()
 
 
 @compiled
@@ -183,37 +74,29 @@ def solve(case: RotorCase, thrust_guess: Scalar = 0.0) -> TiltedLoads:
     def evaluate(params: _Params, w: Array) -> PeriodBladeLoads:
         return loads_at(params[0], w)
 
+    def again(params: _Params, w: Array, known: PeriodBladeLoads) -> PeriodBladeLoads:
+        return loads_at(params[0], w, known.recambering)
+
     def residual(params: _Params, w: Array, loads: PeriodBladeLoads) -> Array:
-        return induced_velocity(params[0], mean_thrust(params[0], loads)) - w
+        return momentum_less(params[0], w, loads)
 
     def search(params: _Params) -> tuple[Array, PeriodBladeLoads, None]:
         flow, thrust_guess = params
-        state = flow.case.state
-        tip_speed = state.rotation_speed * flow.case.rotor.radius
 
-        def trial(w: Array) -> tuple[Array, PeriodBladeLoads]:
-            loads = evaluate(params, w)
+        def trial(w: Array, last: PeriodBladeLoads) -> tuple[Array, PeriodBladeLoads]:
+            loads = again(params, w, last)
             return residual(params, w, loads), loads
 
-        w, loads = decreasing_root(
-            trial,
-            lowest_induced_velocity(state, flow.case.rotor.radius),
-            tip_speed,
-            induced_velocity(flow, jnp.where(thrust_guess == 0.0, _guess(flow), thrust_guess)),
-            _TOLERANCE,
-        )
+        low, high = bracket(flow)
+        known = coarse_root(flow, thrust_guess)
+        none = empty(partial(evaluate, params), known.root)
+        guess = known.holding(dataclasses.replace(none, recambering=known.results))
+        w, loads = decreasing_root(trial, low, high, guess, _TOLERANCE, straight=True)
         return w, loads, None
 
     params = (flow, jnp.asarray(thrust_guess, float))
-    w, loads, _ = at_root(search, evaluate, residual, params)
+    w, loads, _ = at_root(search, evaluate, residual, params, again)
     return unless_still(turning, tilted_loads(flow, w, loads))
-
-
-def _guess(flow: TiltedFlow) -> Array:
-    """Thrust [N] of a hovering rotor whose induced velocity is `_GUESS` of the tip speed."""
-    state, rotor = flow.case.state, flow.case.rotor
-    w = _GUESS * state.rotation_speed * rotor.radius
-    return 2.0 * state.air.density * jnp.asarray(rotor.disk_area) * w**2
 
 
 def evaluate(

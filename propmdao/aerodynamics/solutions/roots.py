@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import partial
-from typing import Any, NamedTuple, TypeVar
+from typing import Any, Generic, NamedTuple, TypeVar
 
 import jax
 import jax.numpy as jnp
@@ -16,29 +16,59 @@ _MAX_EVALUATIONS = 60
 
 Params = TypeVar("Params")
 Results = TypeVar("Results")
+Other = TypeVar("Other")
 Notes = TypeVar("Notes")
 
 
+class Guess(NamedTuple, Generic[Results]):
+    """What is known of a root before the search.
+
+    Attributes
+    ----------
+    root : float
+        The first trial.
+    results : pytree
+        Results to start from there, in the shape of those of a trial.
+    slope : float
+        Slope of the residual; -1 is that of x = g(x) with a constant g.
+    """
+
+    root: Scalar
+    results: Results
+    slope: Scalar = -1.0
+
+    def holding(self, results: Other) -> Guess[Other]:
+        """The same guess with other results to start from."""
+        return Guess(self.root, results, self.slope)
+
+
 def decreasing_root(
-    residual: Callable[[Array], tuple[Array, Results]],
+    residual: Callable[[Array, Results], tuple[Array, Results]],
     low: Scalar,
     high: Scalar,
-    guess: Scalar,
+    guess: Guess[Results],
     tolerance: float,
+    straight: bool = False,
 ) -> tuple[Array, Results]:
     """Root of a decreasing function by the secant method, kept inside a shrinking bracket.
 
     Parameters
     ----------
     residual : callable
-        Function that returns the residual and the results computed on the way to it, any pytree.
+        ``residual(x, last)`` returns the residual and the results computed on the way to it, any
+        pytree of floats; `last` are the results of the trial before, to start from.
         The residual is continuous, of slope about -1, positive at `low` and negative at `high`;
         the ends are not evaluated.
-    low, high, guess : float
-        Both ends of the bracket, and the first trial.
+    low, high : float
+        Both ends of the bracket.
+    guess : Guess
+        The first trial, and what is known there.
     tolerance : float
         Relative error allowed. For a slope of about -1 a secant step leaves an error of about the
         product of the last two steps, and the first step one below the residual.
+    straight : bool
+        Whether the results at the root are those on the straight line through the last two trials,
+        whose error is that of the root, or computed once more.
 
     Returns
     -------
@@ -52,28 +82,34 @@ def decreasing_root(
 
     def step(state: _Search) -> _Search:
         x = state.trial
-        f, results = residual(x)
+        f, results = residual(x, state.results)
         lo, hi = jnp.where(f > 0.0, x, state.low), jnp.where(f > 0.0, state.high, x)
-        # The first step has no secant: bisecting would throw the guess away, so move as if the
-        # slope were -1, which is that of x = g(x) with a constant g.
+        # The first step has no secant: bisecting would throw the guess away.
         secant = (f - state.last_residual) / (x - state.last_trial)
-        slope = jnp.where(state.n_trials == 0, -1.0, secant)
+        slope = jnp.where(state.n_trials == 0, guess.slope, secant)
         trial = x - f / slope
         inside = (trial > lo) & (trial < hi)
         following = jnp.where(inside | (f == 0.0), trial, 0.5 * (lo + hi))
         close = jnp.abs((following - x) * (x - state.last_trial)) <= tolerance * following**2
         close = close | (jnp.abs(f) <= tolerance * jnp.abs(following))
+        if straight:
+            share = jnp.where(close, (following - x) / (x - state.last_trial), 0.0)
+            results = jax.tree.map(
+                lambda at, last: at + share * (at - last), results, state.results
+            )
+        # Where the next trial will do, it is evaluated once more, for the results there, unless
+        # they lie on a straight line.
+        done = close if straight else state.close
         return _Search(
             n_trials=state.n_trials + 1,
             low=lo,
             high=hi,
-            # Where the next trial will do, it is evaluated once more, for the results there.
             trial=jnp.where(state.close, x, following),
             last_trial=x,
             last_residual=f,
             results=results,
             close=close,
-            done=state.close,
+            done=done,
         )
 
     none, no = jnp.asarray(jnp.inf), jnp.asarray(False)
@@ -81,10 +117,10 @@ def decreasing_root(
         n_trials=0,
         low=jnp.asarray(low, float),
         high=jnp.asarray(high, float),
-        trial=jnp.asarray(guess, float),
+        trial=jnp.asarray(guess.root, float),
         last_trial=none,
         last_residual=none,
-        results=empty(residual, guess)[1],
+        results=guess.results,
         close=no,
         done=no,
     )
@@ -117,6 +153,7 @@ def at_root(
     evaluate: Callable[[Params, Array], Results],
     residual: Callable[[Params, Array, Results], Array],
     params: Params,
+    again: Callable[[Params, Array, Results], Results] | None = None,
 ) -> tuple[Array, Results, Notes]:
     """Evaluate a model at the root of its residual, with the derivative of the implicit function.
 
@@ -136,6 +173,9 @@ def at_root(
         ``residual(params, x, results)`` is zero at the root.
     params : pytree
         Everything that the three depend on: they may close over nothing that is traced.
+    again : callable, optional
+        ``again(params, x, results)`` evaluates the model where its results are known; by default
+        they are of no use to `evaluate`.
 
     Returns
     -------
@@ -150,9 +190,10 @@ def at_root(
     @converged.defjvp
     def derivative(primals: tuple[Params], tangents: tuple[Params]) -> tuple[Any, Any]:
         x, results, notes = converged(*primals)
+        known = results
 
         def model(params: Params, x: Array) -> tuple[Results, Array]:
-            results = evaluate(params, x)
+            results = evaluate(params, x) if again is None else again(params, x, known)
             return results, residual(params, x, results)
 
         by_x = jax.jvp(partial(model, *primals), (x,), (jnp.ones_like(x),))[1]

@@ -28,7 +28,9 @@ Floats = npt.NDArray[np.float64]
 
 @dataclasses.dataclass(frozen=True)
 class Flight:
-    """Level flight of a propeller, its axis along the path, past a microphone over hard ground.
+    """Level flight of a propeller past a microphone over hard ground.
+
+    Its axis is along the path or, at an incidence of the operating point, leans forward.
 
     Attributes
     ----------

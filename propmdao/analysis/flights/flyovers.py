@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
-from propmdao.acoustics.broadband.rotor import StripFlow, rotor_self_noise
+from propmdao.acoustics.broadband.rotor import StripFlow
 from propmdao.acoustics.kinematics.motion import Motion, poses
 from propmdao.acoustics.kinematics.tracks import fixed_observers, flyover_track, line_of_sight
 from propmdao.acoustics.levels.time_levels import third_octave_history
@@ -18,7 +18,7 @@ from propmdao.acoustics.sources.flyover import flyover_histories
 from propmdao.acoustics.sources.rotors import Rotor, equally_spaced
 from propmdao.analysis.flights.flyover_results import STEP, Flight, Flyover
 from propmdao.analysis.results import Analysis
-from propmdao.analysis.self_noise import BANDS_HZ, strip_flow
+from propmdao.analysis.self_noise import BANDS_HZ, self_noise, strip_flow
 from propmdao.geometry.blade import Blade
 from propmdao.geometry.lattice import strip_interpolation
 from propmdao.geometry.meshes import propeller_surface
@@ -58,9 +58,10 @@ def fly_over(analysis: Analysis, flight: Flight, *, sound: bool = False) -> Flyo
 
     Notes
     -----
-    Absorption uses the direct path's length for the reflected path as well.
+    At an incidence the shaft leans forward by 90 degrees less it; elevations in the result are from
+    the plane of the rotor that leans. Absorption uses the direct path's length for the reflected
+    path as well.
     """
-    analysis.point.require_axial("a flyover")
     state = analysis.state
     air, sound_speed = state.air, float(state.air.sound_speed)
     speed = float(state.speed)
@@ -86,7 +87,7 @@ def fly_over(analysis: Analysis, flight: Flight, *, sound: bool = False) -> Flyo
     places = [[0.0, flight.sideline, flight.microphone_height]]
     if flight.microphone_height > 0.0:
         places.append([0.0, flight.sideline, -flight.microphone_height])
-    track = flyover_track(flight.height, speed)
+    track = flyover_track(flight.height, speed, 90.0 - analysis.point.incidence_deg)
     clock: Floats = start + np.arange(n_steps * each) / rate
     tones = _tones(analysis, propeller, places, clock, track)
     held = BANDS_HZ[BANDS_HZ * 10**0.06 < 0.5 * rate]
@@ -190,14 +191,9 @@ def _broadband(
     if model is None:
         model = SelfNoiseModel(analysis.model.loads.transition.trip_in_noise)
     powers = [
-        rotor_self_noise(
-            flow,
-            n_blades,
-            analysis.state,
-            position[None],
-            BANDS_HZ / factor,
-            model=model,
-        ).total[0]
+        self_noise(flow, n_blades, analysis.state, position[None], model, BANDS_HZ / factor).total[
+            0
+        ]
         for position, factor in zip(beside, doppler, strict=True)
     ]
     return np.array(powers)

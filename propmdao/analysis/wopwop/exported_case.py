@@ -63,16 +63,20 @@ def write_case(analysis: Analysis, folder: str | Path, n_times: int = 1024) -> N
     ------
     ValueError
         If the propeller does not turn, nobody listens, or the folder cannot be written.
+
+    Notes
+    -----
+    The ground's axes are those of the rotor at time 0: at an incidence the flight is along +x and
+    +z, and the loads are periodic, with the azimuth as key.
     """
-    analysis.point.require_axial("a PSU-WOPWOP case")
     state, observers = analysis.state, analysis.listening.observers
-    omega, speed, air = float(state.rotation_speed), float(state.speed), state.air
+    omega, air = float(state.rotation_speed), state.air
     if not omega > 0.0:
         raise ValueError(f"rpm must be positive for a PSU-WOPWOP case; it is {analysis.rpm:g}")
     if not len(observers):
         raise ValueError("a PSU-WOPWOP case needs observers; there are none")
     propeller, fidelity = analysis.changed_propeller, analysis.model.fidelity
-    velocity = np.array([0.0, 0.0, speed])
+    velocity = np.asarray(state.velocity)
     write_rotor_case(
         folder,
         [Rotor(equally_spaced(propeller.n_blades), omega, loads=analysis.loads.point_loads)],

@@ -23,6 +23,7 @@ _LENGTHS = {
     "beta_deg": "pitch",
     "sweep_over_R": "sweep",
     "rake_over_R": "rake",
+    "trailing_edge_over_R": "trailing_edge_thickness",
 }
 #: Keys of each entry, the propeller's own first.
 FORMS = {key: (key, *(f"{length}_{unit}" for unit in _UNITS)) for key, length in _LENGTHS.items()}
@@ -39,7 +40,8 @@ def in_own_units(data: dict[str, Any]) -> dict[str, Any]:
     ----------
     data : dict
         Entries of a propeller file. ``diameter_mm``, ``diameter_inch`` stand for the diameter;
-        ``radius_``, ``chord_``, ``sweep_`` and ``rake_`` for what is over the tip radius;
+        ``radius_``, ``chord_``, ``sweep_``, ``rake_`` and ``trailing_edge_thickness_`` for what is
+        over the tip radius (the last may be one number for all stations);
         ``pitch_`` for the blade angle, the angle of a screw that advances so far in a turn, at the
         stations or one number for all. The diameter may be left out beside radii, whose last is the
         tip.
@@ -71,9 +73,10 @@ def in_own_units(data: dict[str, Any]) -> dict[str, Any]:
     own["diameter"] = 2.0 * radius
     if "r_over_R" in lengths:
         own["r_over_R"] = lengths["r_over_R"] / lengths["r_over_R"][-1]
-    for key in ("c_over_R", "sweep_over_R", "rake_over_R"):
+    for key in ("c_over_R", "sweep_over_R", "rake_over_R", "trailing_edge_over_R"):
         if key in lengths:
-            own[key] = lengths[key] / radius
+            values = lengths[key] / radius
+            own[key] = values if np.ndim(data[keys[key]]) else float(values[0])
     if "beta_deg" in lengths:
         if "r_over_R" not in own:
             raise PropellerError(f"{keys['beta_deg']} needs stations: r_over_R or radius_mm")
@@ -137,7 +140,8 @@ def _as_described(propeller: Propeller) -> tuple[FloatArray, FloatArray]:
 def _length(form: str, value: Any) -> FloatArray:
     """Lengths [m] of an entry whose name ends in its unit."""
     unit = _UNITS[form.rpartition("_")[2]]
-    scalar = form.startswith("diameter") or (form.startswith("pitch") and np.ndim(value) == 0)
+    uniform = form.startswith(("pitch", "trailing_edge")) and np.ndim(value) == 0
+    scalar = uniform or form.startswith("diameter")
     values = checks.distribution(form, [checks.number(form, value)] if scalar else value)
     if values.size == 0:
         raise PropellerError(f"{form} must hold a value; it is empty")

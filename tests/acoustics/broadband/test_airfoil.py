@@ -11,7 +11,7 @@ import pytest
 from jax.test_util import check_grads
 
 from propmdao.acoustics.broadband.boundary_layer import boundary_layer
-from propmdao.acoustics.broadband.directivity import Radiation, radiation
+from propmdao.acoustics.broadband.directivity import Radiation, moving_radiation, radiation
 from propmdao.acoustics.broadband.self_noise import (
     third_octave_centers,
     tip_noise,
@@ -43,6 +43,23 @@ def test_directivity_as_printed():
     low = np.sin(theta) ** 2 * np.sin(phi) ** 2 / moving**4
     assert float(got.high * r**2) == pytest.approx(high, rel=1e-9)
     assert float(got.low * r**2) == pytest.approx(low, rel=1e-9)
+
+
+def test_directivity_of_a_moving_edge_as_printed():
+    # Equations 19 and 20 of Brooks and Burley; where nothing moves, that of an airfoil at rest.
+    theta, phi, r, approach = 1.1, 0.7, 2.0, 0.8
+    y, z = r * np.sin(theta) * np.cos(phi), r * np.sin(theta) * np.sin(phi)
+    got = moving_radiation(r * np.cos(theta), y, z, approach)
+    high = 2 * np.sin(theta / 2) ** 2 * np.sin(phi) ** 2 / approach**4
+    low = np.sin(theta) ** 2 * np.sin(phi) ** 2 / approach**4
+    assert float(got.high * r**2) == pytest.approx(high, rel=1e-9)
+    assert float(got.low * r**2) == pytest.approx(low, rel=1e-9)
+    for a, b in zip(
+        jax.tree.leaves(moving_radiation(0.3, 0.2, 1.0, 1.0)),
+        jax.tree.leaves(radiation(0.3, 0.2, 1.0, 0.0)),
+        strict=True,
+    ):
+        assert float(a) == pytest.approx(float(b), rel=1e-12)
 
 
 def test_directivity_is_finite_in_the_chord_line():

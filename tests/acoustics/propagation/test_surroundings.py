@@ -21,15 +21,16 @@ C = 340.0
 F = np.array([80.0, 400.0, 2500.0])
 
 
-def monopole(positions, mach=0.0):
+def monopole(positions, mach=0.0, incidence=0.0):
     """Tones of a source at rest in the hub; in flight only their phase and spreading are right."""
-    d = np.asarray(way_flying_along(positions, mach)[0])[:, None]
+    velocity = mach * np.array([np.sin(incidence), 0.0, np.cos(incidence)])
+    d = np.asarray(way_flying_along(positions, velocity)[0])[:, None]
     p = jnp.asarray(np.exp(2j * np.pi * F / C * d) / d)
     return Tones(jnp.asarray(F), {"thickness": p, "loading": 0.5 * p})
 
 
-def flying(mach=0.0, air=Air(sound_speed=C)):  # noqa: B008 - frozen
-    return RotorState(0.0, mach * C, air)
+def flying(mach=0.0, air=Air(sound_speed=C), incidence=0.0):  # noqa: B008 - frozen
+    return RotorState(0.0, mach * C, air, incidence)
 
 
 def test_without_surroundings_nothing_changes():
@@ -90,30 +91,47 @@ def test_bands_interfere_as_the_tones_of_which_they_are_made():
     assert high[0, 0] == pytest.approx(2.0, rel=0.02)
 
 
-def test_air_takes_from_both_ways_at_the_frequency_that_it_hears():
+@pytest.mark.parametrize("incidence", [0.0, 1.2])
+def test_air_takes_from_both_ways_at_the_frequency_that_it_hears(incidence):
     air = Air(sound_speed=C)
     around = Surroundings(absorption=True)
     mach = 0.3
-    place = np.array([[0.0, 0.0, 100.0], [0.0, 0.0, -100.0]])  # ahead and behind
+    ahead = 100.0 * np.array([np.sin(incidence), 0.0, np.cos(incidence)])
+    place = np.stack([ahead, -ahead])
     paths = sound_paths(place, around)
-    heard = tones_by_paths(monopole(place, mach), paths, flying(mach, air), around)
-    lost = np.asarray(spl_db(monopole(place, mach).total) - spl_db(heard.total))
+    source, state = monopole(place, mach, incidence), flying(mach, air, incidence)
+    heard = tones_by_paths(source, paths, state, around)
+    lost = np.asarray(spl_db(source.total) - spl_db(heard.total))
     # Ahead the sound runs after the observer: 100 m / (1 - M), shortened waves.
     for i, sign in enumerate((1.0, -1.0)):
         way, f = 100.0 / (1 - sign * mach), F / (1 - sign * mach)
         np.testing.assert_allclose(lost[i], absorption_db_per_m(f, air) * way, rtol=1e-9)
-    bands = bands_by_paths(np.ones((2, 3)), F, paths, flying(mach, air), around)
+    bands = bands_by_paths(np.ones((2, 3)), F, paths, state, around)
     np.testing.assert_allclose(level_db(np.ones((2, 3))) - level_db(bands), lost, rtol=1e-9)
 
 
 def test_way_flying_along_is_that_of_formulation_1a():
     """The sound of a source at rest in the moving frame reaches the observer after d / c."""
-    place, mach = np.array([[3.0, -2.0, 4.0]]), 0.4
+    place, mach = np.array([[3.0, -2.0, 4.0]]), np.array([0.3, -0.1, 0.4])
     d, doppler = (float(q[0]) for q in way_flying_along(place, mach))
-    emitted_from = np.array([0.0, 0.0, -mach * d])  # where the source was, seen from its place
-    assert np.linalg.norm(place[0] - emitted_from) == pytest.approx(d, rel=1e-12)
-    towards = (place[0, 2] + mach * d) / d
-    assert doppler == pytest.approx(1 / (1 - mach * towards), rel=1e-12)
+    way = place[0] + mach * d  # from where the source was to where the observer is
+    assert np.linalg.norm(way) == pytest.approx(d, rel=1e-12)
+    assert doppler == pytest.approx(1 / (1 - mach @ way / d), rel=1e-12)
+
+
+@pytest.mark.parametrize("incidence_deg", [0.0, 70.0, 90.0, 110.0])
+def test_level_flight_is_along_the_ground(incidence_deg):
+    around = Surroundings(ground=5.0, level_flight=True)
+    state = flying(0.1, incidence=np.radians(incidence_deg))
+    ahead, up = np.asarray(state.velocity) / (0.1 * C), np.array(around.up(incidence_deg))
+    turned = around.from_ground_axes(np.eye(3), incidence_deg)
+    np.testing.assert_allclose(turned, [ahead, [0.0, 1.0, 0.0], up], atol=1e-15)
+    # A shaft that leans forward has its thrust side up, one that lies down has none.
+    assert up[2] == pytest.approx(np.sin(np.radians(incidence_deg)))
+    _, image = sound_paths(5.0 * ahead[None] - 2.0 * up, around, incidence_deg)
+    np.testing.assert_allclose(image[0], 5.0 * ahead - 8.0 * up, atol=1e-12)
+    with pytest.raises(ValueError, match="observer 1 is 1 m below the ground"):
+        sound_paths(-6.0 * up[None], around, incidence_deg)
 
 
 def test_observers_below_the_ground_are_refused():

@@ -8,8 +8,10 @@ import pytest
 from propmdao.acoustics.kinematics.observers import arc
 from propmdao.acoustics.levels.decibels import oaspl_db
 from propmdao.acoustics.sources.formulation1a import tones
+from propmdao.acoustics.sources.periodic import rotor_tones, tilted_tones
+from propmdao.acoustics.sources.rotors import Rotor, equally_spaced
 from propmdao.records.air import Air
-from propmdao.records.loads import PointLoads
+from propmdao.records.loads import PeriodicLoads, PointLoads
 from propmdao.records.panels import Panels
 from propmdao.records.states import RotorState
 
@@ -108,3 +110,55 @@ def test_reverse_derivative_of_a_full_surface_at_nine_observers_needs_megabytes(
     weights = (jnp.ones((9, 10), complex),) * 2
     workspace = jax.jit(pull_back).lower(values, weights).compile().memory_analysis()
     assert workspace.temp_size_in_bytes < 64 * 2**20  # 14 MiB; one observer unrolled takes 64
+
+
+@pytest.fixture(scope="module")
+def changing(slow_flyer):
+    """Loads that follow the sine and cosine of the azimuth."""
+    psi = 2 * np.pi * np.arange(12) / 12
+    change = 1 + 0.3 * np.cos(psi) - 0.2 * np.sin(2 * psi)
+    force = jnp.asarray(change[:, None, None] * slow_flyer.loads.force)
+    return PeriodicLoads(slow_flyer.loads.position, force)
+
+
+def test_tones_that_can_be_traced_are_those_of_any_rotor(rotor, changing):
+    n_blades, air = rotor.n_blades, Air()
+    state = RotorState(rotor.rotation_speed, 20.0, air, np.radians(70.0))
+    ours = tilted_tones(rotor.panels, changing, n_blades, state, OBSERVERS, N_HARMONICS)
+    blades = Rotor(equally_spaced(n_blades), rotor.rotation_speed, rotor.panels, changing)
+    velocity = float(state.edgewise_speed), 0.0, float(state.axial_speed)
+    theirs = rotor_tones(blades, velocity, air, OBSERVERS, N_HARMONICS)
+    np.testing.assert_allclose(ours.frequency_hz, theirs.frequency_hz, rtol=1e-12)
+    for name, pressure in theirs.parts.items():
+        largest = np.abs(pressure).max()
+        np.testing.assert_allclose(ours.parts[name], pressure, rtol=0.0, atol=1e-12 * largest)
+        assert largest > 0.0
+    still = state.turning(0.0)
+    quiet = tilted_tones(rotor.panels, changing, n_blades, still, OBSERVERS, N_HARMONICS)
+    assert not np.any(quiet.total) and not np.any(quiet.frequency_hz)
+
+
+@pytest.mark.slow  # half a minute of compilation
+def test_derivatives_of_tones_at_an_incidence(rotor, changing):
+    weights = np.random.default_rng(6).normal(size=(2, len(OBSERVERS), N_HARMONICS))
+
+    def weighted(values):
+        panels, loads, omega, speed, incidence, sound_speed, observers = values
+        state = RotorState(omega, speed, Air(sound_speed=sound_speed), incidence)
+        sound = tilted_tones(panels, loads, rotor.n_blades, state, observers, N_HARMONICS)
+        parts = (sound.parts["thickness"] * 1e2, sound.parts["loading"])
+        return sum((weights[0] * p.real + weights[1] * p.imag).sum() for p in parts)
+
+    values = (rotor.panels, changing, rotor.rotation_speed, 20.0, 1.2, 340.0, OBSERVERS)
+    values = jax.tree.map(lambda q: jnp.asarray(q, float), values)
+    gradient = jax.jit(jax.grad(weighted))(values)
+    value = jax.jit(weighted)
+    for index in range(len(values)):
+        only = jax.tree.map(jnp.zeros_like, values)
+        only = (*only[:index], direction(values, 7)[index], *only[index + 1 :])
+        along = sum(jax.tree.leaves(jax.tree.map(lambda g, q: jnp.sum(g * q), gradient, only)))
+        step = 1e-5
+        ends = [
+            value(jax.tree.map(lambda q, d, h=h: q + h * d, values, only)) for h in (step, -step)
+        ]
+        assert (ends[0] - ends[1]) / (2 * step) == pytest.approx(float(along), rel=1e-5)

@@ -52,6 +52,14 @@ def test_negative_ranges_and_every_option(analyzer: Any, tmp_path: Path) -> None
     assert analyzer.asked[0].change == Change(-2.0, 1.1, 0.3, 3)
 
 
+def test_level_flight_at_an_incidence_places_by_the_ground(analyzer: Any, tmp_path: Path) -> None:
+    arguments = "--rpm 3000 --incidence 70 --level --grid 0 0 -10 --out"
+    assert command(*arguments.split(), str(tmp_path / "s.csv")) == 0
+    angle = np.radians(70.0)
+    below = [[10.0 * np.cos(angle), 0.0, -10.0 * np.sin(angle)]]
+    np.testing.assert_allclose(analyzer.asked[0].listening.observers, below, atol=1e-12)
+
+
 def test_drawn_points_and_fixed_values(analyzer: Any, tmp_path: Path) -> None:
     arguments = "--samples 10 --seed 2 --rpm 3000:6000 --twist-offset -2:2 --speed 0:8:8"
     with pytest.raises(SystemExit):
@@ -82,6 +90,10 @@ def test_points_of_a_file_with_other_values(analyzer: Any, tmp_path: Path) -> No
         ("--rpm 3000 --arc 1.905", "at least one elevation"),
         ("--rpm 3000 --trip light", "trip 'light' is about broadband noise"),
         ("--rpm 3000 --ground 0", "height above ground must be within 0.001 ... 1000000 m"),
+        (
+            "--rpm 3000 --incidence 60:80:10 --level --grid 0 0 -10",
+            "with --level all points need the same incidence; they have 3",
+        ),
         ("--rpm 3000 --workers 0", "number of workers must be within 1 ... 256; it is 0"),
         ("--rpm 3000 --samples 5", "--samples needs a range LOWEST:HIGHEST"),
         ("--rpm 3000:4000 --samples 0", "--samples must be within 1 ... 100000; it is 0"),

@@ -16,11 +16,12 @@ def _lift(inputs, constants, static):
 
 
 def _lift_alone(inputs, constants, static):
-    return {"lift": _lift(inputs, constants, static)["lift"]}
+    lift = _lift(inputs, constants, static)["lift"]
+    return {"lift": lift, "force": lift * np.array([0.6, 0.0, -0.8])}
 
 
 class Wing(NodesComp):
-    """Lift of surfaces that fly at several speeds, and a constant."""
+    """Lift of surfaces that fly at several speeds, their shares or its vector, and a constant."""
 
     def initialize(self):
         super().initialize()
@@ -29,13 +30,15 @@ class Wing(NodesComp):
     def setup(self):
         self.add_point_input("speed", val=10.0, units="m/s")
         self.add_point_input("density", val=1.2, units="kg/m**3")
-        self.add_input("area", val=np.array([1.0, 2.0, 3.0]), units="m**2", tags=STATIC)
+        self.add_input("area", val=np.array([1.0, 2.0, 2.5, 0.5]), units="m**2", tags=STATIC)
         self.add_point_output("lift", units="N")
         self.add_output("gravity", val=9.81)
         self.function = _lift_alone
         if self.options["shares"]:
-            self.add_point_output("share", shape=(3,), units="N")
+            self.add_point_output("share", shape=(4,), units="N")
             self.function = _lift
+        else:
+            self.add_point_output("force", shape=(3,), units="N")
 
     def check(self, inputs, values):
         if inputs["speed"][0] > 300.0:
@@ -50,14 +53,14 @@ def problem(num_nodes, mode="auto", **options):
 
 
 @pytest.mark.parametrize(
-    ("num_nodes", "scalar", "array"), [(None, (1,), (3,)), (1, (1,), (1, 3)), (4, (4,), (4, 3))]
+    ("num_nodes", "scalar", "array"), [(None, (1,), (4,)), (1, (1,), (1, 4)), (5, (5,), (5, 4))]
 )
 def test_nodes_lead_what_belongs_to_an_operating_point(num_nodes, scalar, array):
     prob = problem(num_nodes)
     prob.run_model()
     assert prob.get_val("speed").shape == prob.get_val("lift").shape == scalar
     assert prob.get_val("share").shape == array
-    assert prob.get_val("area").shape == (3,)
+    assert prob.get_val("area").shape == (4,)
     assert_allclose(prob.get_val("lift"), 360.0)
     assert_allclose(prob.get_val("gravity"), 9.81)
 
@@ -101,7 +104,7 @@ def test_a_failure_names_its_node():
         alone.run_model()
 
 
-def test_gradients_of_scalars_are_computed_once_at_a_point(monkeypatch):
+def test_gradients_of_scalars_and_vectors_are_computed_once_at_a_point(monkeypatch):
     prob = problem(3, "fwd", shares=False)
     prob.set_val("speed", [8.0, 10.0, 12.0])
     prob.run_model()
@@ -112,9 +115,9 @@ def test_gradients_of_scalars_are_computed_once_at_a_point(monkeypatch):
     )
     for _ in range(2):
         prob.compute_totals(of=["lift"], wrt=["speed", "density", "area"])
-        assert len(calls) == 3
+        assert len(calls) == 12  # four numbers at each of three points
     prob.set_val("speed", [8.0, 11.0, 12.0])  # one of the points is another one
     prob.run_model()
     totals = prob.compute_totals(of=["lift"], wrt=["speed"])["lift", "speed"]
     assert_allclose(totals, np.diag(6.0 * 1.2 * np.array([8.0, 11.0, 12.0])))
-    assert len(calls) == 4
+    assert len(calls) == 16

@@ -10,6 +10,7 @@ import pytest
 from propmdao.formats.toml_files import read_toml, write_toml
 from propmdao.propeller.airfoils.datums import chord_from_flat_bottom, chord_from_parting_line
 from propmdao.propeller.checks import PropellerError
+from propmdao.propeller.identity import checksum
 
 HEAD = """name = "made"
 n_blades = 2
@@ -66,6 +67,23 @@ def test_offsets_may_be_lengths(tmp_path: Path) -> None:
     np.testing.assert_allclose(blade.rake_over_R, [0.0, 0.0, 0.1])
 
 
+@pytest.mark.parametrize(
+    ("text", "over_R"),
+    [
+        ("trailing_edge_thickness_mm = 0.635", 0.005),
+        ("trailing_edge_thickness_inch = [0.05, 0.025, 0]", [0.01, 0.005, 0.0]),
+        ("trailing_edge_over_R = 0.005", 0.005),
+    ],
+)
+def test_trailing_edges_and_tips_are_described(text: str, over_R: object, tmp_path: Path) -> None:
+    blade = read_toml(file(tmp_path, f'{text}\ntrailing_edge_angle_deg = 12\ntip = "square"\n'))
+    np.testing.assert_allclose(blade.trailing_edge_over_R, np.broadcast_to(over_R, 3))
+    np.testing.assert_array_equal(blade.trailing_edge_angle_deg, 12.0)
+    write_toml(tmp_path / "again.toml", blade)
+    again = read_toml(tmp_path / "again.toml")
+    assert again.tip == "square" and checksum(again) == checksum(blade)
+
+
 @pytest.mark.parametrize("line", ["flat_bottom", "parting_line", "chord"])
 def test_the_blade_angle_may_be_of_another_line(line: str, tmp_path: Path) -> None:
     """Referred to the line again, the angle of the chord line is what was written."""
@@ -117,6 +135,9 @@ def test_camber_is_scaled_to_what_is_described(tmp_path: Path) -> None:
         ({"c_over_R": "chord_mm = [1, 2]"}, "", "c_over_R has 2 values for 3 stations"),
         ({}, 'beta_from = "te"\n', "beta_from must be one of chord, flat_bottom, parting_line"),
         ({}, "chord_mn = [1, 2, 3]\n", "unknown key 'chord_mn'; did you mean 'chord_mm'?"),
+        ({}, "trailing_edge_thickness_mm = -0.1\n", "trailing_edge_over_R must be within 0 ... 1"),
+        ({}, "trailing_edge_angle_deg = 90\n", "trailing_edge_angle_deg must be within 0 ... 60"),
+        ({}, 'tip = "pointed"\n', "tip must be one of rounded, square; it is 'pointed'"),
         ({}, "camber_over_chord = [1, 0, 0]\n", "camber_over_chord must be within -0.5 ... 0.5"),
     ],
 )  # fmt: skip

@@ -15,7 +15,7 @@ from propmdao.acoustics.kinematics.observers import arc
 from propmdao.acoustics.kinematics.reception import Observers
 from propmdao.acoustics.sources.rotors import rotor_histories
 from propmdao.analysis.wopwop.foreign_case import run_case
-from propmdao.commands.wopwop_command import levels
+from propmdao.commands.exchange.wopwop_command import levels
 from propmdao.records.air import Air
 
 AIR, DISTANCE = Air(density=1.226, sound_speed=340.0), 30.48

@@ -15,7 +15,7 @@ from propmdao.aerodynamics.solutions.marching.step import (
     StepLoads,
     load_positions,
 )
-from propmdao.aerodynamics.solutions.period_loads import PeriodBladeLoads, turn_derivative
+from propmdao.aerodynamics.solutions.period.loads import PeriodBladeLoads, turn_derivative
 from propmdao.aerodynamics.solutions.periodic import (
     TiltedFlow,
     induced_velocity,
@@ -66,6 +66,7 @@ def mean_loads(
         load_positions(lattice),
         mean.force.at[:, on_rings].set(case.state.air.density * unsteady),
         dataclasses.replace(mean.sections, residual=residual),
+        mean.recambering,
     )
     flow = TiltedFlow(case, lattice.period)
     w = induced_velocity(flow, mean_thrust(flow, loads))

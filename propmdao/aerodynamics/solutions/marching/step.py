@@ -1,6 +1,6 @@
 """One time step: circulation and forces of the blades in the wake that they have shed.
 
-The equations are those of a period (`solutions.period_loads`) at one moment: Neumann condition with
+The equations are those of a period (`solutions.period.loads`) at one moment: Neumann condition with
 the wake of the past, unsteady Kutta condition, for the youngest rings have what the strips have
 now, the lattice held to the polars, Kutta-Joukowski force with the local velocity, Bernoulli's
 unsteady term with a backward difference of second order.
@@ -24,12 +24,12 @@ from propmdao.aerodynamics.sections.period_recambering import (
 )
 from propmdao.aerodynamics.sections.recambering import SectionStates
 from propmdao.aerodynamics.solutions.lattice_loads import profile_drag
-from propmdao.aerodynamics.solutions.period_lattice import (
+from propmdao.aerodynamics.solutions.period.lattice import (
     PeriodLattice,
     at_the_blades,
     bound_inverse,
 )
-from propmdao.aerodynamics.solutions.period_loads import PeriodOnset
+from propmdao.aerodynamics.solutions.period.loads import PeriodOnset
 from propmdao.aerodynamics.wakes.lags import remembered
 from propmdao.aerodynamics.wakes.sheets import Sheets, normalwash_of_strips, sheet_velocities
 from propmdao.records.air import Air
@@ -83,12 +83,15 @@ class StepLoads:
         Flow, lift and drag of the sections, (m, ns) each.
     attached : (m, ns) array
         Share of the lattice in the angle of attack.
+    recambering : (m, ns) array
+        Recambering of the sections, 0 in inviscid flow [rad].
     """
 
     circulation: Array
     force: Array
     sections: SectionStates
     attached: Array
+    recambering: Array
 
 
 def marched_lattice(period: PeriodLattice) -> MarchedLattice:
@@ -185,7 +188,7 @@ def step_loads(
         laws = jax.vmap(
             lambda speed: section_laws(strips, speed, onset.turning_share, air, polars)
         )(onset.relative_speed)
-        recambering = solve_period_recambering(flow, laws)
+        recambering = solve_period_recambering(flow, laws, recambering)
     by_lattice, by_motion = period_states(flow, recambering, laws)
 
     strip = flow.circulation + (flow.response @ recambering.ravel()).reshape(m, ns)
@@ -220,6 +223,7 @@ def step_loads(
         jnp.concatenate([lift, unsteady, profile], axis=1),
         by_lattice,
         onset.attached,
+        recambering,
     )
 
 

@@ -27,8 +27,8 @@ from propmdao.aerodynamics.solutions.marching.step import (
     seen_from_each,
     step_loads,
 )
-from propmdao.aerodynamics.solutions.period_lattice import period_lattice
-from propmdao.aerodynamics.solutions.period_loads import tilted_onset
+from propmdao.aerodynamics.solutions.period.lattice import period_lattice
+from propmdao.aerodynamics.solutions.period.loads import tilted_onset
 from propmdao.aerodynamics.vortices.cores import core_radius, middles
 from propmdao.aerodynamics.wakes.free import (
     FreeFilaments,

@@ -8,7 +8,7 @@ from numpy.testing import assert_allclose
 
 pytest.importorskip("matplotlib")
 
-from propmdao.figures.flow.sections import drag_ratios
+from propmdao.figures.measured.section_drag import drag_ratios
 
 
 def test_each_group_is_drawn_over_lift_in_all_axes():

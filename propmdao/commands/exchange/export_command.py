@@ -14,8 +14,8 @@ from propmdao.commands.options import (
     asked_of,
     number,
 )
-from propmdao.commands.output_files import require_output, require_output_folder
-from propmdao.commands.warning_lines import warning_lines
+from propmdao.commands.output.output_files import require_output, require_output_folder
+from propmdao.commands.output.warning_lines import warning_lines
 from propmdao.formats.endings import PROPELLER_WRITERS, STL_UNITS
 from propmdao.runtime.terminal import print_line
 
@@ -68,7 +68,7 @@ def add_export(commands: argparse._SubParsersAction[Any]) -> None:
     command.add_argument(
         "--units", choices=STL_UNITS, help="unit of length of an .stl file, m by default"
     )
-    names = ("rpm", "thrust", "speed", "density", "twist_offset_deg", "viscous")
+    names = ("rpm", "thrust", "speed", "incidence_deg", "density", "twist_offset_deg", "viscous")
     add_asked(command, names, required=False)
     add_observers(command)
 
@@ -124,9 +124,11 @@ def _write_case(options: argparse.Namespace, propeller: Propeller) -> None:
     with warning_lines("export"):
         analysis = analyze(propeller, **asked_of(options), listening=listening)
     write_case(analysis, options.to)
+    incidence = analysis.point.incidence_deg
+    tilted = f" at an incidence of {incidence:g} deg" if incidence else ""
     print_line(
         f"{options.to}: PSU-WOPWOP case of {propeller.name} at {analysis.rpm:.1f} rpm,"
-        f" {analysis.point.speed:g} m/s, thrust {float(analysis.loads.thrust):.4g} N,"
+        f" {analysis.point.speed:g} m/s{tilted}, thrust {float(analysis.loads.thrust):.4g} N,"
         f" {len(listening.observers)} observers"
     )
     from propmdao.commands import report

@@ -8,7 +8,7 @@ from numpy.testing import assert_allclose
 
 pytest.importorskip("matplotlib")
 
-from propmdao.figures.convergence import convergence
+from propmdao.figures.designs.convergence import convergence
 
 
 def test_best_line_is_that_of_feasible_designs(line):

@@ -6,7 +6,7 @@ from numpy.testing import assert_allclose
 
 pytest.importorskip("matplotlib")
 
-from propmdao.figures import searches
+from propmdao.figures.designs import searches
 
 
 def test_history_shows_all_designs_and_marks_those_that_meet_the_constraints():

@@ -8,10 +8,10 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from propmdao.commands.json_output import print_json
 from propmdao.commands.options import add_command
-from propmdao.commands.output_files import require_output
-from propmdao.commands.warning_lines import warning_lines
+from propmdao.commands.output.json_output import print_json
+from propmdao.commands.output.output_files import require_output
+from propmdao.commands.output.warning_lines import warning_lines
 from propmdao.runtime.output_files import replacing
 
 if TYPE_CHECKING:

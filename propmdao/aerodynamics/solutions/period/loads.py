@@ -31,7 +31,7 @@ from propmdao.aerodynamics.sections.period_recambering import (
 )
 from propmdao.aerodynamics.sections.recambering import SectionStates
 from propmdao.aerodynamics.solutions.lattice_loads import LatticeGeometry, profile_drag
-from propmdao.aerodynamics.solutions.period_lattice import (
+from propmdao.aerodynamics.solutions.period.lattice import (
     PeriodLattice,
     PeriodWake,
     at_the_blades,
@@ -94,12 +94,15 @@ class PeriodBladeLoads:
         on the rings, profile drag on the sections [N].
     sections : SectionStates
         Flow, lift and drag of the sections, (n_azimuths, ns) each.
+    recambering : (n_azimuths, ns) array
+        Recambering of the sections, 0 in inviscid flow [rad].
     """
 
     circulation: Array
     position: Array
     force: Array
     sections: SectionStates
+    recambering: Array
 
     @property
     def hub_force(self) -> Array:
@@ -177,6 +180,7 @@ def period_loads(
     rotation_speed: Scalar,
     air: Air,
     sections: ViscousSections | None,
+    start: Array | None = None,
 ) -> PeriodBladeLoads:
     """Solve for the circulation over a period in a given wake and take the forces.
 
@@ -194,6 +198,8 @@ def period_loads(
         The undisturbed air.
     sections : ViscousSections or None
         Polars that the lattice is held to; None for inviscid flow.
+    start : (n_azimuths, ns) array, optional
+        Recambering from which the search for it starts [rad]; by default none.
 
     Returns
     -------
@@ -222,7 +228,7 @@ def period_loads(
     recambering, laws = jnp.zeros((n, ns)), None
     if sections is not None:
         laws = _period_laws(lattice, onset, air, sections)
-        recambering = solve_period_recambering(flow, laws)
+        recambering = solve_period_recambering(flow, laws, recambering if start is None else start)
     by_lattice, by_motion = period_states(flow, recambering, laws)
 
     change = (flow.response @ recambering.ravel()).reshape(n, ns)
@@ -264,6 +270,7 @@ def period_loads(
                 behind, by_motion.drag_coefficient, by_lattice.drag_coefficient
             ),
         ),
+        recambering,
     )
 
 

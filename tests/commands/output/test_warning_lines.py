@@ -5,7 +5,7 @@ import io
 import pytest
 
 from propmdao.aerodynamics.solutions.marching.marched_loads import MarchProgress
-from propmdao.commands.warning_lines import progress_line, progress_text
+from propmdao.commands.output.warning_lines import progress_line, progress_text
 
 BEGUN = MarchProgress(1, 144, 0.1, float("nan"), 80 * 2**20)
 

@@ -1,0 +1,190 @@
+"""Write docs/validation_book.md: comparisons with experiment and other codes, from their tests.
+
+Run it from the repository: ``python docs/validation_book.py``. The tests in ``tests/validation``
+are run, and every statement that they hold is written down with the numbers found, so the page
+cannot say anything else than they do. ``PROPMDAO_REFERENCE_DATA`` names the folder of reference
+data; tests that need it are listed as left out where it is not set.
+"""
+
+from __future__ import annotations
+
+import ast
+import dataclasses
+import os
+import re
+import subprocess
+import sys
+import tempfile
+import textwrap
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+ROOT = Path(__file__).parents[1]
+PAGE = Path(__file__).with_suffix(".md")
+TESTS = "tests/validation"
+LONGEST = 90  # characters of a statement in the table
+# Left out of an explanation: the type that NumPy and JAX write around a number.
+_TYPES = re.compile(
+    r"(?:np\.|jnp\.)?(?:float64|float32|int64|bool_?|Array)\(([^()]*?)(?:, dtype=\w+)?\)"
+)
+_DIGITS = re.compile(r"-?\d+\.\d{4,}(?:e[-+]?\d+)?")
+
+
+@dataclasses.dataclass
+class Check:
+    """A test: what it held, and how it ended.
+
+    Attributes
+    ----------
+    name : str
+        Name of the test with its parameters.
+    statements : list of (str, str)
+        Each assertion as the test has it, and with the numbers found.
+    outcome : str
+        "passed", "failed" or "skipped".
+    reason : str
+        Reason of a failure, or for leaving it out.
+    """
+
+    name: str
+    statements: list[tuple[str, str]] = dataclasses.field(default_factory=list)
+    outcome: str = "passed"
+    reason: str = ""
+
+
+class Recorder:
+    """Plugin of pytest that keeps every assertion that holds."""
+
+    def __init__(self) -> None:
+        self.cases: dict[str, dict[str, Check]] = {}
+
+    def check(self, nodeid: str) -> Check:
+        """Record of a test, made where there is none."""
+        file, _, name = nodeid.partition("::")
+        return self.cases.setdefault(file, {}).setdefault(name, Check(name))
+
+    def pytest_assertion_pass(self, item: pytest.Item, lineno: int, orig: str, expl: str) -> None:
+        """Keep a statement that held."""
+        self.check(item.nodeid).statements.append((orig, expl.splitlines()[0]))
+
+    def pytest_runtest_logreport(self, report: Any) -> None:
+        """Keep how a test ended."""
+        check = self.check(report.nodeid)
+        if report.failed:
+            check.outcome, check.reason = "failed", report.longreprtext.splitlines()[-1]
+        elif report.skipped:
+            check.outcome, check.reason = "skipped", str(report.longrepr[2])
+
+
+def page(cases: dict[str, dict[str, Check]]) -> str:
+    """Page of the book.
+
+    Parameters
+    ----------
+    cases : dict of dict of Check
+        Checks by file and name.
+
+    Returns
+    -------
+    str
+        Markdown.
+    """
+    summary = ["| case | checks | hold | fail | left out |", "| --- | ---: | ---: | ---: | ---: |"]
+    sections = []
+    for file, checks in cases.items():
+        title, text = described(file)
+        outcomes = [check.outcome for check in checks.values()]
+        counts = (outcomes.count(name) for name in ("passed", "failed", "skipped"))
+        summary.append(_row(f"[{title}](#{_anchor(title)})", f"{len(checks)}", *map(str, counts)))
+        sections += [
+            f"## {title}\n",
+            f"`{file}`\n",
+            *([f"{text}\n"] if text else []),
+            _table(checks),
+        ]
+    return "\n".join([HEAD, *summary, "", *sections])
+
+
+HEAD = """# Validation book
+
+Comparisons with experiment and other codes, case by case: source and conditions, every statement
+that its test holds, and the numbers found. Statements are held from both sides where a change for
+the better should be noticed, too. Written by `python docs/validation_book.py` from a run of
+`tests/validation`; [verification](verification.md) has the tables and their discussion,
+[known failures](known_failures.md) what is missed.
+"""
+
+
+def described(file: str) -> tuple[str, str]:
+    """Title and text of a case, from the docstring of its tests.
+
+    Parameters
+    ----------
+    file : str
+        Path of the tests from the repository.
+
+    Returns
+    -------
+    title, text : str
+        First sentence without its full stop, and the rest.
+    """
+    docstring = ast.get_docstring(ast.parse((ROOT / file).read_text(encoding="utf-8"))) or file
+    title, _, text = docstring.partition("\n\n")
+    return " ".join(title.split()).rstrip("."), text.strip()
+
+
+def _anchor(title: str) -> str:
+    kept = re.sub(r"[^\w\- ]", "", title.lower())
+    return kept.replace(" ", "-")
+
+
+def _table(checks: dict[str, Check]) -> str:
+    rows = ["| check | holds | found | verdict |", "| --- | --- | --- | --- |"]
+    for check in checks.values():
+        name = check.name.removeprefix("test_").replace("_", " ")
+        verdict = {"passed": "met", "failed": "**missed**", "skipped": "left out"}[check.outcome]
+        if check.reason:
+            rows.append(_row(name, check.reason, "", verdict))
+            name, verdict = "", ""
+        for statement, found in check.statements:
+            rows.append(_row(name, _code(statement), _code(_plain(found)), verdict))
+            name = ""
+    return "\n".join(rows) + "\n"
+
+
+def _row(*cells: str) -> str:
+    escaped = (cell.replace("|", r"\|") for cell in cells)
+    return f"| {' | '.join(escaped)} |"
+
+
+def _plain(text: str) -> str:
+    """An explanation without types and the folder of the data, with four digits."""
+    text = text.replace(os.environ.get("PROPMDAO_REFERENCE_DATA", "\0"), "...")
+    return _DIGITS.sub(lambda number: f"{float(number[0]):.4g}", _TYPES.sub(r"\1", text))
+
+
+def _code(text: str) -> str:
+    """A line of code, shortened."""
+    words = " ".join(text.split()).replace("`", "'")
+    return f"`{textwrap.shorten(words, LONGEST, placeholder=' ...')}`"
+
+
+def main() -> None:
+    """Run the tests and write the page."""
+    if "--run" in sys.argv:
+        recorder = Recorder()
+        arguments = [TESTS, "-vv", "-p", "no:cacheprovider"]  # -vv: numbers in full
+        arguments += ["-o", "enable_assertion_pass_hook=true"]
+        pytest.main(arguments, plugins=[recorder])
+        PAGE.write_text(page(recorder.cases), encoding="utf-8")
+        return
+    # Rewritten tests that are cached know of no such hook: this run has a cache of its own.
+    with tempfile.TemporaryDirectory() as folder:
+        environment = os.environ | {"PYTHONPYCACHEPREFIX": folder}
+        subprocess.run([sys.executable, __file__, "--run"], cwd=ROOT, env=environment, check=True)
+
+
+if __name__ == "__main__":
+    main()

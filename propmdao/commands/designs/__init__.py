@@ -1,0 +1,1 @@
+"""Designs beside each other and searches for them: ``propmdao compare`` and ``optimise``."""

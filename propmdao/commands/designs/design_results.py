@@ -1,0 +1,147 @@
+"""What ``propmdao optimise`` writes: the blade, its history, and both blades beside each other."""
+
+from __future__ import annotations
+
+import argparse
+import csv
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from propmdao.analysis.comparisons import (
+    operation_and_levels,
+    print_comparison,
+    write_comparison,
+)
+from propmdao.analysis.single_point import analyze
+from propmdao.commands import report
+from propmdao.commands.designs.design_options import ASKED_OPTIONS
+from propmdao.commands.designs.design_search import TOLERANCE
+from propmdao.commands.observer_options import listening_of
+from propmdao.commands.output.output_files import save_figures
+from propmdao.commands.output.progress import progress
+from propmdao.commands.output.results_folder import file_name
+from propmdao.commands.output.warning_lines import warning_lines
+from propmdao.components.drivers.search_history import SearchHistory
+from propmdao.figures.designs import searches
+from propmdao.figures.designs.of_comparison import compared_figures
+from propmdao.formats.toml_files import write_toml
+from propmdao.propeller.description import Propeller
+from propmdao.propeller.design_choices import RESPONSES
+from propmdao.records.states import OperatingPoint
+from propmdao.runtime.output_files import replacing
+from propmdao.runtime.terminal import print_line, printable
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+    from propmdao.analysis.results import Analysis
+
+
+def write_results(
+    folder: Path,
+    options: argparse.Namespace,
+    blades: tuple[Propeller, Propeller],
+    points: Sequence[OperatingPoint],
+    history: SearchHistory,
+) -> dict[str, Any]:
+    """Write the designed propeller and compare it with the described one.
+
+    Parameters
+    ----------
+    folder : Path
+        Folder of the results.
+    options : argparse.Namespace
+        What was typed.
+    blades : (Propeller, Propeller)
+        The described and the designed one.
+    points : sequence of OperatingPoint
+        Operating points of the design.
+    history : SearchHistory
+        Designs of the search.
+
+    Returns
+    -------
+    dict
+        Results for the record: the analyses of both blades at every operating point.
+    """
+    described, designed = blades
+    file = folder / f"{file_name(designed.name)}.toml"
+    write_toml(file, designed)
+    _write_history(folder / "history.csv", history, RESPONSES[options.minimise].label)
+    figures = {"history": _history_figure(history, options.minimise)}
+    files = [str(file), str(folder / "history.csv")]
+    listening = listening_of(options)
+    asked = {name: getattr(options, name) for name in ASKED_OPTIONS if name != "trip"}
+    if len(listening.observers):  # a blade that is quieter in tones may be louder in all
+        asked |= {"broadband": True, "trip": options.trip}
+    results = []
+    for number, point in enumerate(points, start=1):
+        suffix = "" if len(points) == 1 else f"_at_{number}"
+        progress(f"analysing both blades at {point.thrust:g} N, {point.speed:g} m/s")
+        with warning_lines("optimise"):
+            analyses = {
+                printable(blade.name): analyze(blade, point, listening=listening, **asked)
+                for blade in (described, designed)
+            }
+        results += [analysis.to_dict() for analysis in analyses.values()]
+        observer = _loudest(analyses)
+        columns = {}
+        for name, analysis in analyses.items():
+            rows, columns[name] = operation_and_levels(analysis.to_dict(), observer or 0)
+        if len(points) > 1:
+            print_line(f"At {point.thrust:g} N, {point.speed:g} m/s:")
+        print_comparison(rows, columns)
+        report.print_doubts([analysis.to_dict() for analysis in analyses.values()])
+        table = folder / f"comparison{suffix}.csv"
+        write_comparison(rows, columns, table)
+        files.append(str(table))
+        drawn = compared_figures(analyses, observer)
+        if number > 1:
+            del drawn["blades"]
+        figures |= {
+            name if name == "blades" else f"{name}{suffix}": figure
+            for name, figure in drawn.items()
+        }
+        if observer is not None:
+            files += _sounds(folder, analyses, suffix)
+    files += save_figures(folder, figures)
+    print_line(" ".join(["Files:", *files]))
+    return {"results": results}
+
+
+def _loudest(analyses: dict[str, Analysis]) -> int | None:
+    """Observer of the described blade's loudest tones; None where nobody listens."""
+    first = next(iter(analyses.values()))
+    if not len(first.listening.observers):
+        return None
+    levels = [observer["oaspl_db"] for observer in first.to_dict()["observers"]]
+    return int(np.argmax(levels))
+
+
+def _sounds(folder: Path, analyses: dict[str, Analysis], suffix: str) -> list[str]:
+    from propmdao.analysis.sounds import MAX_CHANNELS, write_sounds
+
+    if len(next(iter(analyses.values())).listening.observers) > MAX_CHANNELS:
+        return []
+    paths = {folder / f"{file_name(name)}{suffix}.wav": each for name, each in analyses.items()}
+    return [str(sound.path) for sound in write_sounds(paths, 5.0)]
+
+
+def _write_history(path: Path, history: SearchHistory, label: str) -> None:
+    """Write every design that was tried."""
+    with replacing(path) as file, file.open("w", newline="", encoding="utf-8") as stream:
+        writer = csv.writer(stream)
+        writer.writerow(["design", label, "largest violation, scaled", "violated, or failure"])
+        rows = zip(history.objective, history.violation, history.constraint, strict=True)
+        for number, (objective, violation, constraint) in enumerate(rows, start=1):
+            failed = not np.isfinite(violation)
+            numbers = ["", ""] if failed else [float(objective), float(violation)]
+            writer.writerow([number, *numbers, constraint])
+
+
+def _history_figure(history: SearchHistory, minimise: str) -> Figure:
+    label = RESPONSES[minimise].label
+    return searches.history({"search": (history.objective, history.violation)}, label, TOLERANCE)

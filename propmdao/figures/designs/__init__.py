@@ -1,0 +1,1 @@
+"""Figures of designs over each other and of searches for them."""

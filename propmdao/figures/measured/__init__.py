@@ -1,0 +1,1 @@
+"""Figures of measurements and what was computed at the same points."""
