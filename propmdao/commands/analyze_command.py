@@ -162,8 +162,8 @@ def add_analyze(commands: argparse._SubParsersAction[Any]) -> None:
         type=Path,
         metavar="FOLDER",
         help="spectrum, third octaves and pressure at the observer of the loudest tones,"
-        " directivity of an arc, map of a hemisphere; at an incidence the loads over the disk, with"
-        " or without observers; as PNG",
+        " directivity of an arc, map of a hemisphere; at an incidence the loads over the disk and"
+        " with --unsteady the wake, also without observers; as PNG",
     )
     group.add_argument(
         "--figure-at",
@@ -182,7 +182,8 @@ def add_analyze(commands: argparse._SubParsersAction[Any]) -> None:
         type=Path,
         metavar="FOLDER",
         help="blades with pressure difference and forces of their panels, and wake with its"
-        " circulation, as files of VTK for ParaView; at an incidence at every azimuth",
+        " circulation, as files of VTK for ParaView; at an incidence at every azimuth, with"
+        " --unsteady at the end",
     )
 
 
@@ -265,8 +266,8 @@ def _check(options: argparse.Namespace) -> None:
             continue
         if _is_list(options.rpm):
             raise ValueError(f"{option} is of one operating point: give one --rpm")
-        drawn = option == "--vtk" or (option == "--figures" and options.incidence_deg)
-        if not placed and not drawn:
+        of_flow = options.incidence_deg or options.unsteady
+        if not placed and not (option == "--vtk" or (option == "--figures" and of_flow)):
             raise ValueError(f"{option} needs observers, as with --arc 1.905 -45")
     if options.full_scale is not None and options.wav is None:
         raise ValueError("--full-scale is of a sound file: add --wav FILE.wav")
