@@ -33,6 +33,7 @@ from propmdao.formats.endings import POLAR_READERS, described
 from propmdao.records.quantities import ASKED
 
 if TYPE_CHECKING:
+    from propmdao.aerodynamics.sections.polars.family import SectionPolars
     from propmdao.aerodynamics.sections.polars.table import PolarTable
     from propmdao.analysis.results import Analysis
 
@@ -139,6 +140,19 @@ def add_analyze(commands: argparse._SubParsersAction[Any]) -> None:
     command.add_argument("--json", action="store_true", help="print JSON instead of tables")
     add_observers(command)
     add_surroundings(command)
+    tables = command.add_argument_group("tables", "CSV files with units in their heads.")
+    tables.add_argument(
+        "--out",
+        type=Path,
+        metavar="FILE.csv",
+        help="operating points and levels, a row for each observer of each point",
+    )
+    tables.add_argument(
+        "--spectra",
+        type=Path,
+        metavar="FILE.csv",
+        help="tones, bins of 5 Hz and third octaves at every observer, in dB and in dBA",
+    )
     group = command.add_argument_group("sound and figures", "Of one operating point.")
     group.add_argument(
         "--wav",
@@ -161,9 +175,9 @@ def add_analyze(commands: argparse._SubParsersAction[Any]) -> None:
         "--figures",
         type=Path,
         metavar="FOLDER",
-        help="spectrum, third octaves and pressure at the observer of the loudest tones,"
-        " directivity of an arc, map of a hemisphere; at an incidence the loads over the disk and"
-        " with --unsteady the wake, also without observers; as PNG",
+        help="blade, loads over span and polars; where there are observers spectrum, third octaves"
+        " and pressure at that of the loudest tones, directivity of an arc, map of a hemisphere; at"
+        " an incidence the loads over the disk and with --unsteady the wake; as PNG",
     )
     group.add_argument(
         "--figure-at",
@@ -234,7 +248,8 @@ def _analyze(options: argparse.Namespace) -> None:
             result["band"] = None  # what has not converged has none, and says why
             if result["converged"]:
                 result["band"] = band(analysis, polars=polars if own else None).to_dict()
-    results[0] |= _write(options, analyses[0])
+    results[0] |= _write(options, analyses[0], polars)
+    _write_tables(options, results)
     if options.json:
         print_json(results if _is_list(options.rpm) else results[0])
     else:
@@ -266,15 +281,20 @@ def _check(options: argparse.Namespace) -> None:
             continue
         if _is_list(options.rpm):
             raise ValueError(f"{option} is of one operating point: give one --rpm")
-        of_flow = options.incidence_deg or options.unsteady
-        if not placed and not (option == "--vtk" or (option == "--figures" and of_flow)):
+    for option, value in (("--wav", options.wav), ("--spectra", options.spectra)):
+        if value is not None and not placed:
             raise ValueError(f"{option} needs observers, as with --arc 1.905 -45")
     if options.full_scale is not None and options.wav is None:
         raise ValueError("--full-scale is of a sound file: add --wav FILE.wav")
     if options.figures is None and (options.figure_at is not None or options.figure_dba):
         raise ValueError("--figure-at and --figure-dba are of figures: add --figures FOLDER")
-    if options.wav is not None:
-        require_output("--wav", options.wav, ".wav")
+    for option, path, ending in (
+        ("--wav", options.wav, ".wav"),
+        ("--out", options.out, ".csv"),
+        ("--spectra", options.spectra, ".csv"),
+    ):
+        if path is not None:
+            require_output(option, path, ending)
     for option, folder in (("--figures", options.figures), ("--vtk", options.vtk)):
         if folder is not None:
             require_output_folder(option, folder)
@@ -295,7 +315,21 @@ def _check_observers(options: argparse.Namespace, n_observers: int) -> None:
         require_matplotlib("--figures")
 
 
-def _write(options: argparse.Namespace, analysis: Analysis) -> dict[str, Any]:
+def _write_tables(options: argparse.Namespace, results: list[dict[str, Any]]) -> None:
+    """Write levels and spectra, and tell of them in the first result."""
+    from propmdao.commands.output.level_files import write_levels, write_spectra
+
+    tables = (("out", write_levels), ("spectra", write_spectra))
+    written = {name: write for name, write in tables if getattr(options, name) is not None}
+    for name, write in written.items():
+        write(getattr(options, name), results)
+    if written:
+        results[0]["tables"] = [str(getattr(options, name)) for name in written]
+
+
+def _write(
+    options: argparse.Namespace, analysis: Analysis, polars: SectionPolars | None
+) -> dict[str, Any]:
     """Write sound, figures and files for ParaView; what was written."""
     written: dict[str, Any] = {}
     if options.wav is not None:
@@ -305,9 +339,13 @@ def _write(options: argparse.Namespace, analysis: Analysis) -> dict[str, Any]:
         written["sound"] = sound._asdict() | {"path": str(sound.path)}
     if options.figures is not None:
         from propmdao.figures.of_analysis import analysis_figures
+        from propmdao.figures.rotor.of_rotor import rotor_figures
 
-        observer = None if options.figure_at is None else options.figure_at - 1
-        figures = analysis_figures(analysis, observer, options.figure_dba)
+        figures = rotor_figures(analysis, polars)
+        of_flow = options.incidence_deg or options.unsteady
+        if len(analysis.listening.observers) or of_flow:
+            observer = None if options.figure_at is None else options.figure_at - 1
+            figures |= analysis_figures(analysis, observer, options.figure_dba)
         written["figures"] = save_figures(options.figures, figures)
     if options.vtk is not None:
         from propmdao.figures.flow.scenes import write_scenes

@@ -190,7 +190,8 @@ def print_files(result: dict[str, Any]) -> None:
     Parameters
     ----------
     result : dict
-        With "sound", of `formats.wav.Recording`, "figures" and "vtk", names of files; or without.
+        With "sound", of `formats.wav.Recording`, "tables", "figures" and "vtk", names of files; or
+        without.
     """
     if "sound" in result:
         sound = result["sound"]
@@ -198,6 +199,8 @@ def print_files(result: dict[str, Any]) -> None:
             f"Sound: {sound['path']}, {sound['duration']:.3f} s, full scale"
             f" {sound['full_scale']:g} Pa, peak {sound['peak']:.4g} Pa"
         )
+    if "tables" in result:
+        print_line(" ".join(["Tables:", *result["tables"]]))
     if "figures" in result:
         print_line(" ".join(["Figures:", *result["figures"]]))
     if "vtk" in result:

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import argparse
+import csv
 from collections.abc import Callable, Mapping, Sequence
-from typing import Any
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 from propmdao.commands.observer_options import (
     add_observers,
@@ -19,10 +21,18 @@ from propmdao.commands.options import (
     number,
     number_or_range,
 )
+from propmdao.commands.output.output_files import (
+    require_matplotlib,
+    require_output_folder,
+    save_figures,
+)
 from propmdao.commands.output.warning_lines import warning_lines
 from propmdao.records.quantities import VARIABLES
 from propmdao.records.units import Range
 from propmdao.runtime.terminal import print_line
+
+if TYPE_CHECKING:
+    from propmdao.propeller.description import Propeller
 
 SWEEP_DESCRIPTION = """\
 A propeller at many points into a table, a row per point: a map of thrust, torque and noise over
@@ -106,6 +116,13 @@ def add_sweep(commands: argparse._SubParsersAction[Any]) -> None:
         metavar="FILE",
         help="table: .csv, or .parquet, which is written at the end beside the .csv of that name",
     )
+    command.add_argument(
+        "--figures",
+        type=Path,
+        metavar="FOLDER",
+        help="CT, CP, efficiency and figure of merit over the one or two variables that vary, as"
+        " PNG",
+    )
     add_observers(command)
     add_surroundings(command)
 
@@ -119,6 +136,13 @@ def _sweep(options: argparse.Namespace) -> None:
     from propmdao.formats.propellers import load_propeller
     from propmdao.runtime.worker_processes import WorkerLostError
 
+    columns: tuple[str, ...] = ()
+    if options.figures is not None:
+        require_output_folder("--figures", options.figures)
+        require_matplotlib("--figures")
+        from propmdao.figures.rotor.sweep_maps import varied_columns
+
+        columns = varied_columns(points)
     with warning_lines("sweep"):
         propeller = load_propeller(options.propeller)
     try:
@@ -137,8 +161,33 @@ def _sweep(options: argparse.Namespace) -> None:
     if failures and len(failures) == len(points):
         raise ValueError(f"{counts}, the first with: {failures[0]}")
     print_line(f"{counts}; {options.out}")
+    if options.figures is not None:
+        print_line(" ".join(["Figures:", *_draw(options, propeller, points, columns)]))
     for reason in list(dict.fromkeys(failures))[:3]:
         print_line(f"  failed: {reason}")
+
+
+def _draw(
+    options: argparse.Namespace,
+    propeller: Propeller,
+    points: list[dict[str, float]],
+    columns: tuple[str, ...],
+) -> list[str]:
+    """Draw the points of this sweep that its table has results of."""
+    from propmdao.figures.rotor.sweep_maps import SHOWN, sweep_maps
+    from propmdao.formats.result_table import STATUS, table_files
+    from propmdao.propeller.identity import checksum
+
+    asked = {tuple(point[column] for column in columns) for point in points}
+    file, _ = table_files(options.out)
+    rows = []
+    with file.open(newline="", encoding="utf-8") as stream:
+        for row in csv.DictReader(stream):
+            if row[STATUS] != "ok" or row["blade"] != checksum(propeller):
+                continue
+            if tuple(float(row[column]) for column in columns) in asked:
+                rows.append({name: float(row[name]) for name in (*columns, *SHOWN)})
+    return save_figures(options.figures, {"sweep": sweep_maps(rows, columns, propeller.name)})
 
 
 def _incidence(options: argparse.Namespace, points: Sequence[Mapping[str, float]]) -> float:

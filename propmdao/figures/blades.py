@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 
 def blade_comparison(
-    propellers: Mapping[str, Propeller], section_r_over_R: Sequence[float]
+    propellers: Mapping[str, Propeller], section_r_over_R: Sequence[float], title: str = ""
 ) -> Figure:
     """Blades beside each other: distributions over span, planform and sections.
 
@@ -29,6 +29,8 @@ def blade_comparison(
         Up to four propellers by name: the first dashed, the second solid.
     section_r_over_R : sequence of float
         Radii r/R of the sections that are drawn.
+    title : str
+        Title.
 
     Returns
     -------
@@ -50,6 +52,7 @@ def blade_comparison(
     spans[-1].set_xlabel("r/R")
     sections[-1].set_xlabel("x/c")
     figure.align_ylabels(spans)
+    figure.suptitle(literal(title), x=0.02, ha="left", fontsize="medium")
     figure.legend(*spans[0].get_legend_handles_labels(), loc="outside upper center", ncols=4)
     return figure
 

@@ -56,7 +56,7 @@ def analysis_figures(
         still.
     """
     positions = analysis.listening.observers
-    title = _operation(analysis)
+    title = operation(analysis)
     flow, loads = {}, analysis.loads
     if isinstance(loads, TiltedLoads) and analysis.point.incidence_deg:
         flow["disk"] = disk_of_loads(loads, f"{title}; seen from the thrust's side")
@@ -141,7 +141,7 @@ def _at_observer(analysis: Analysis, sound: Sound, observer: int) -> dict[str, F
     # Straight below and above there is no azimuth.
     if abs(seen.elevation_deg) < 90.0 and seen.azimuth_deg != 0.0:
         place += f", azimuth {seen.azimuth_deg:.4g}°"
-    title = f"{_operation(analysis)}; observer {observer + 1}: {place}, {seen.radius:.4g} m"
+    title = f"{operation(analysis)}; observer {observer + 1}: {place}, {seen.radius:.4g} m"
     figures = {"pressure": pressure({title: blade_passage(sound.tones, observer)})}
     if sound.has_broadband:
         figures["spectrum"] = narrowband_spectrum({title: sound}, observer)
@@ -153,8 +153,19 @@ def _at_observer(analysis: Analysis, sound: Sound, observer: int) -> dict[str, F
     return figures
 
 
-def _operation(analysis: Analysis) -> str:
-    """Propeller, rotation speed and flight for titles."""
+def operation(analysis: Analysis) -> str:
+    """Propeller, rotation speed and flight for titles.
+
+    Parameters
+    ----------
+    analysis : Analysis
+        The analysis.
+
+    Returns
+    -------
+    str
+        In words.
+    """
     speed, incidence = float(analysis.point.speed), analysis.point.incidence_deg
     flight = f"{speed:.4g} m/s" if speed else "hover"
     if incidence:

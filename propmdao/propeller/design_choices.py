@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import dataclasses
 
-from propmdao.records.quantities import Range
+from propmdao.records.units import Range
 
 
 @dataclasses.dataclass(frozen=True)

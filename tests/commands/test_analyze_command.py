@@ -249,7 +249,8 @@ def test_what_was_assumed_about_a_propeller_file_is_one_line(
         (f"analyze {PROPELLER} --rpm 4000 --ar 1.905 0", "unrecognized arguments"),
         (f"analyze {PROPELLER} --rpm 4000 --trip light", "trip 'light' is about broadband noise"),
         (f"analyze {PROPELLER} --rpm 4000 --wav a.wav", "--wav needs observers"),
-        (f"analyze {PROPELLER} --rpm 4000 --figures a", "--figures needs observers"),
+        (f"analyze {PROPELLER} --rpm 4000 --spectra a.csv", "--spectra needs observers"),
+        (f"analyze {PROPELLER} --rpm 4000 --out a.txt", "a.txt: the file must end in .csv"),
         (f"analyze {PROPELLER} --rpm 4000 --arc 1 0 --figure-at 1", "add --figures FOLDER"),
         (
             f"analyze {PROPELLER} --rpm 4000 --arc 1 0 30 --figures a --figure-at 3",
@@ -390,7 +391,7 @@ def test_help_explains_every_option(capsys: pytest.CaptureFixture[str]) -> None:
     options += " --unsteady --revolutions --average --timestep --start --wake"
     options += " --arc --point --circle --hemisphere --grid --ground --level --absorption"
     options += " --broadband --trip --band --wav --seconds --full-scale --figures --figure-at"
-    options += " --figure-dba --vtk --json"
+    options += " --figure-dba --vtk --json --out --spectra --quiet"
     for option in options.split():
         assert option in text
     assert "examples:" in text

@@ -71,7 +71,7 @@ def write_results(
     file = folder / f"{file_name(designed.name)}.toml"
     write_toml(file, designed)
     _write_history(folder / "history.csv", history, RESPONSES[options.minimise].label)
-    figures = {"history": _history_figure(history, options.minimise)}
+    figures = {"history": _history_figure(history, options.minimise, designed.name)}
     files = [str(file), str(folder / "history.csv")]
     listening = listening_of(options)
     asked = {name: getattr(options, name) for name in ASKED_OPTIONS if name != "trip"}
@@ -142,6 +142,7 @@ def _write_history(path: Path, history: SearchHistory, label: str) -> None:
             writer.writerow([number, *numbers, constraint])
 
 
-def _history_figure(history: SearchHistory, minimise: str) -> Figure:
+def _history_figure(history: SearchHistory, minimise: str, name: str) -> Figure:
     label = RESPONSES[minimise].label
-    return searches.history({"search": (history.objective, history.violation)}, label, TOLERANCE)
+    runs = {name: (history.objective, history.violation)}
+    return searches.history(runs, label, TOLERANCE, f"search for {name}")

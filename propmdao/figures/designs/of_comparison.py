@@ -42,7 +42,8 @@ def compared_figures(
     """
     blades = {name: analysis.changed_propeller for name, analysis in analyses.items()}
     inner = max(float(blade.r_over_R[0]) for blade in blades.values())
-    figures = {"blades": blade_comparison(blades, [max(r, inner) for r in _SECTIONS_AT])}
+    title = " and ".join(blades)
+    figures = {"blades": blade_comparison(blades, [max(r, inner) for r in _SECTIONS_AT], title)}
     if observer is None:
         return figures
     first = next(iter(analyses.values()))

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import numpy.typing as npt
 
-from propmdao.figures.style import GRID, RUN_COLORS, page
+from propmdao.figures.style import GRID, RUN_COLORS, line_colors, line_styles, literal, page
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -17,7 +17,10 @@ _LEAST_VIOLATION = 1e-7
 
 
 def history(
-    runs: Mapping[str, tuple[npt.ArrayLike, npt.ArrayLike]], label: str, tolerance: float
+    runs: Mapping[str, tuple[npt.ArrayLike, npt.ArrayLike]],
+    label: str,
+    tolerance: float,
+    title: str = "",
 ) -> Figure:
     """Objective and largest violation of a constraint over the evaluations of searches.
 
@@ -30,6 +33,8 @@ def history(
         Name of the objectives with their unit, for the axis.
     tolerance : float
         Violation that counts as none.
+    title : str
+        Title.
 
     Returns
     -------
@@ -39,21 +44,24 @@ def history(
     """
     figure = page(8.0)
     above, below = figure.subplots(2, 1, sharex=True)
-    for (name, run), color in zip(runs.items(), RUN_COLORS, strict=False):
+    colors, styles = line_colors(runs), line_styles(runs)
+    for name, run in runs.items():
+        color, style = colors[name], styles[name]
         objective, violation = (np.asarray(values, float) for values in run)
         number = np.arange(1, objective.size + 1)
         met = violation <= tolerance
         last = f"{name}: {objective[met][-1]:.2f}" if met.any() else name
-        above.plot(number, objective, color=color, linewidth=1.5, label=last)
+        above.plot(number, objective, style, color=color, linewidth=1.5, label=literal(last))
         above.plot(number[met], objective[met], "o", color=color, markersize=5)
         below.plot(
-            number, np.clip(violation, _LEAST_VIOLATION, None), "o-", color=color,
+            number, np.clip(violation, _LEAST_VIOLATION, None), style, marker="o", color=color,
             linewidth=1.5, markersize=4,
         )  # fmt: skip
     below.axhline(tolerance, color="0.4", linestyle="--", label=f"tolerance, {tolerance:g}")
     below.set(yscale="log", ylabel="largest constraint violation, scaled",
               xlabel="designs evaluated")  # fmt: skip
     above.set_ylabel(label)
+    figure.suptitle(literal(title), x=0.02, ha="left", fontsize="medium")
     for axes in (above, below):
         axes.grid(**GRID)
         axes.set_axisbelow(True)

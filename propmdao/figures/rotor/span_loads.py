@@ -1,0 +1,65 @@
+"""Figure of the loads of a blade over its span."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from propmdao.analysis.results import Analysis
+from propmdao.figures.style import GRID, Floats, literal, page
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+_COLOR = "#0072B2"
+
+
+def span_loads(analysis: Analysis, title: str = "") -> Figure:
+    """Draw lift, angle of attack, Reynolds number, circulation, drag and thrust over span.
+
+    Parameters
+    ----------
+    analysis : Analysis
+        Analysis; at an incidence means over the turn are drawn, with the range over it.
+    title : str
+        Title.
+
+    Returns
+    -------
+    Figure
+        The figure, a dot for each strip of the lattice.
+    """
+    loads, air = analysis.loads, analysis.point.air
+    strips, states = loads.strips, loads.sections
+    reynolds = states.relative_speed * strips.chord / air.kinematic_viscosity
+    # The last ring of a strip has the circulation of the whole section.
+    values = {
+        "lift coefficient": states.lift_coefficient,
+        "angle of attack, deg": np.degrees(np.asarray(states.angle_of_attack)),
+        "drag coefficient": states.drag_coefficient,
+        "Reynolds number, thousands": np.asarray(reynolds) / 1e3,
+        "circulation, m²/s": np.asarray(loads.circulation)[..., -1, :],
+        "thrust over span, N/m": np.asarray(loads.strip_thrust / strips.width),
+    }
+    figure = page(9.5)
+    grid: Any = figure.subplots(3, 2, sharex=True)
+    r = np.asarray(strips.r_over_R)
+    for axes, (label, value) in zip(grid.ravel(), values.items(), strict=True):
+        _draw(axes, r, np.atleast_2d(np.asarray(value, float)))
+        axes.set_ylabel(label)
+        axes.grid(**GRID)
+    for axes in grid[-1]:
+        axes.set_xlabel("r/R")
+    figure.align_ylabels(grid)
+    figure.suptitle(literal(title), x=0.02, ha="left", fontsize="medium")
+    return figure
+
+
+def _draw(axes: Any, r: Floats, over_turn: Floats) -> None:
+    """Mean over the turn, and its range where it is not the same all around."""
+    if len(over_turn) > 1:
+        low, high = over_turn.min(axis=0), over_turn.max(axis=0)
+        axes.fill_between(r, low, high, color=_COLOR, alpha=0.2, linewidth=0.0)
+    axes.plot(r, over_turn.mean(axis=0), "o-", color=_COLOR, markersize=4, linewidth=1.5)
+    axes.set_xlim(right=1.02)

@@ -1,0 +1,141 @@
+"""Figures of a sweep: thrust, power and efficiency over what was varied."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from propmdao.figures.style import (
+    GRID,
+    LINE_STYLES,
+    MARKERS,
+    RUN_COLORS,
+    Floats,
+    literal,
+    page,
+)
+from propmdao.records.quantities import VARIABLES
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+#: What is drawn, by column, with its label.
+SHOWN = {"CT": "CT", "CP": "CP", "eta": "efficiency", "figure_of_merit": "figure of merit"}
+_MOST_LINES = 5  # of values of the second variable that are lines; more are a map
+
+Rows = Sequence[Mapping[str, float]]
+
+
+def varied_columns(points: Sequence[Mapping[str, float]]) -> tuple[str, ...]:
+    """Columns that have more than one value, those with most values first.
+
+    Parameters
+    ----------
+    points : sequence of dict
+        Values of a sweep's variables.
+
+    Returns
+    -------
+    tuple of str
+        Columns of `VARIABLES`, one or two.
+
+    Raises
+    ------
+    ValueError
+        If nothing varies, more than two do, or two are not every combination of their values.
+    """
+    values = {
+        name: {point[name] for point in points if name in point}
+        for name in VARIABLES
+        if any(name in point for point in points)
+    }
+    varied = sorted((n for n in values if len(values[n]) > 1), key=lambda n: -len(values[n]))
+    if len(varied) not in (1, 2):
+        raise ValueError(
+            f"figures of a sweep are over one or two variables; {len(varied)} vary"
+            + (f": {', '.join(varied)}" if varied else "")
+        )
+    if len(varied) == 2 and len(points) != len(values[varied[0]]) * len(values[varied[1]]):
+        raise ValueError(
+            f"figures of a sweep over {varied[0]} and {varied[1]} need every combination of their"
+            " values"
+        )
+    return tuple(varied)
+
+
+def sweep_maps(rows: Rows, columns: Sequence[str], title: str = "") -> Figure:
+    """Draw CT, CP, efficiency and figure of merit over one or two variables.
+
+    Parameters
+    ----------
+    rows : sequence of dict
+        Variables and results of the points that have been analysed, by column; points that have
+        failed are not among them and leave gaps.
+    columns : sequence of str
+        One or two variables, of `varied_columns`.
+    title : str
+        Title.
+
+    Returns
+    -------
+    Figure
+        Lines over the first variable, one for each value of the second; a map where these are more
+        than five.
+    """
+    figure = page(8.5)
+    grid: Any = figure.subplots(2, 2, sharex=True)
+    first, second = columns[0], columns[1] if len(columns) == 2 else None
+    others = [None] if second is None else sorted({row[second] for row in rows})
+    for axes, (name, label) in zip(grid.ravel(), SHOWN.items(), strict=True):
+        if len(others) > _MOST_LINES:
+            assert second is not None
+            _draw_map(figure, axes, rows, (first, second, name), label)
+            axes.set_ylabel(_label(second))
+            axes.set_title(label, fontsize="medium", loc="left")
+            continue
+        for k, other in enumerate(others):
+            chosen = [row for row in rows if second is None or row[second] == other]
+            x = np.array([row[first] for row in chosen])
+            order = np.argsort(x)
+            named = "" if other is None or second is None else f"{_label(second)}: {other:g}"
+            axes.plot(
+                x[order], np.array([row[name] for row in chosen])[order],
+                color=RUN_COLORS[k], linestyle=LINE_STYLES[(k + 1) % len(LINE_STYLES)],
+                marker=MARKERS[k], markersize=4, label=named, linewidth=1.8,
+            )  # fmt: skip
+        axes.set_ylabel(label)
+        axes.grid(**GRID)
+    for axes in grid[-1]:
+        axes.set_xlabel(_label(first))
+    figure.suptitle(literal(title), x=0.02, ha="left", fontsize="medium")
+    if 1 < len(others) <= _MOST_LINES:
+        figure.legend(*grid[0, 0].get_legend_handles_labels(), loc="outside lower center", ncols=3)
+    return figure
+
+
+def _draw_map(figure: Any, axes: Any, rows: Rows, names: tuple[str, str, str], label: str) -> None:
+    """Filled contours with levels on them; points that have failed are left white."""
+    first, second, name = names
+    x, y = (np.array(sorted({row[column] for row in rows})) for column in (first, second))
+    values: Floats = np.full((y.size, x.size), np.nan)
+    for row in rows:
+        values[np.searchsorted(y, row[second]), np.searchsorted(x, row[first])] = row[name]
+    drawn = np.ma.masked_invalid(values)
+    if np.ptp(drawn.compressed()) < 1e-12:  # efficiency in hover
+        axes.text(0.5, 0.5, f"{label} {drawn.min():g} everywhere", ha="center",
+                  transform=axes.transAxes)  # fmt: skip
+        return
+    filled = axes.contourf(x, y, drawn, 10, cmap="viridis")
+    lines = axes.contour(x, y, drawn, 10, colors="black", linewidths=0.6)
+    axes.clabel(lines, fontsize="small")
+    figure.colorbar(filled, ax=axes, label=label, format="%g")
+    axes.plot(*[grid.ravel() for grid in np.meshgrid(x, y)], ".", color="white", markersize=2)
+
+
+def _label(column: str) -> str:
+    """Name of a variable with its unit."""
+    quantity = VARIABLES[column]
+    name = quantity.meaning.split(",")[0]
+    return f"{name}, {quantity.unit}" if quantity.unit else name
