@@ -12,10 +12,10 @@ from propmdao.components.inputs.model_options import declare_model
 from propmdao.components.inputs.noise_inputs import (
     add_noise_inputs,
     check_rotor,
+    declare_azimuths,
     declare_observers,
     noise_state,
 )
-from propmdao.components.inputs.point_inputs import add_point_inputs
 from propmdao.geometry.surface import surface_panels
 from propmdao.records.loads import PeriodicLoads, PointLoads
 from propmdao.records.quantities import LEVELS
@@ -92,14 +92,7 @@ class AcousticsComp(NodesComp):
         super().initialize()
         self.options.declare("n_blades", types=int, desc="number of equally spaced blades")
         self.options.declare("n_loads", types=int, desc="number of point forces of a blade")
-        self.options.declare(
-            "n_azimuths",
-            None,
-            types=int,
-            lower=2,
-            allow_none=True,
-            desc="azimuths of loads that change around the turn; None: steady loads",
-        )
+        declare_azimuths(self.options)
         declare_observers(self.options)
         declare_model(self.options, ["fidelity"])
 
@@ -113,8 +106,6 @@ class AcousticsComp(NodesComp):
         self.add_point_input("load_position", shape=(n_loads, 3), units="m")
         self.add_point_input("load_force", shape=force, units="N", desc="Force on the fluid.")
         add_noise_inputs(self)
-        if n_azimuths is not None:
-            add_point_inputs(self, ["incidence_deg"])
         for quantity in LEVELS.values():
             self.add_point_output(quantity.variable, shape=(n_observers,), desc=quantity.meaning)
         self.add_point_output(

@@ -20,6 +20,7 @@ from propmdao.components.inputs.model_options import declare_model
 from propmdao.components.inputs.noise_inputs import (
     add_noise_inputs,
     check_rotor,
+    declare_azimuths,
     declare_observers,
     noise_state,
 )
@@ -36,6 +37,7 @@ _SILENCE_DB = -200.0
 class BroadbandComp(NodesComp):
     """Broadband self-noise by Brooks, Pope and Marcolini, at observers that fly along.
 
+    The sections work steadily, or with `n_azimuths` as in flight at an incidence, around the turn.
     `oaspl_db` and `oaspl_dba` without a qualifier mean the tones only, those of `AcousticsComp`;
     "broadband" means the noise alone, "total" tones and noise together. With `num_nodes`
     everything but the blade, the observers and `band_frequency` has a leading axis of that many
@@ -48,18 +50,22 @@ class BroadbandComp(NodesComp):
     section_speed : (n_spanwise,) array
         Speed of the air relative to the sections, ``m/s``.
     section_lift_coefficient : (n_spanwise,) array
-        Lift coefficients of the sections, which tell the angle from zero lift.
+        Lift coefficients of the sections, which tell the angle from zero lift. With `n_azimuths`
+        both are (n_azimuths, n_spanwise), at equally spaced azimuths of the blade from 0.
     thickness_over_chord : (n_stations,) array
         Maximum thickness over chord at the propeller's stations. It and the propeller's section
         shapes give the trailing edge.
     rpm : float
         Rotation speed, ``rpm``.
     speed : float
-        Axial flight speed, ``m/s``.
+        Flight speed, ``m/s``.
+    incidence : float
+        Angle between the shaft and the direction of flight, 0 is axial flight, 90 edgewise,
+        ``deg``; an input with `n_azimuths`.
     density, sound_speed : float
         Density of the undisturbed air and its speed of sound, ``kg/m**3``, ``m/s``.
     observer_position : (n_observers, 3) array
-        Positions from the rotor centre, +z toward thrust, ``m``.
+        Positions from the rotor centre, +z toward thrust, flight in the plane of +z and +x, ``m``.
     oaspl_db, oaspl_dba : (n_observers,) arrays
         Levels of the tones that the totals take in; silence where they are not connected.
 
@@ -83,6 +89,9 @@ class BroadbandComp(NodesComp):
         Propeller with the number of blades, stations, section shapes and initial thickness.
     observers : (n_observers, 3) array
         Initial `observer_position` [m]; `propmdao.arc` makes positions.
+    n_azimuths : int or None
+        Azimuths of sections that work differently around the turn; None (default): steady ones,
+        axial flight.
     fidelity : Fidelity
         Numbers of panels.
     trip : {"none", "light", "heavy"}
@@ -91,9 +100,9 @@ class BroadbandComp(NodesComp):
     Raises
     ------
     om.AnalysisError
-        If an input or a result is not finite, rotation or flight backwards, a property of the air
-        not positive, the blade tip not slower than sound, or an observer not outside the rotor;
-        with `num_nodes` the message has the node.
+        If an input or a result is not finite, rotation or flight backwards, the incidence beyond
+        its range, a property of the air not positive, the blade tip not slower than sound, or an
+        observer not outside the rotor; with `num_nodes` the message has the node.
     ValueError
         If `observers` are no positions.
     """
@@ -102,16 +111,18 @@ class BroadbandComp(NodesComp):
         super().initialize()
         self.options.declare("propeller", types=Propeller, desc="the described propeller")
         declare_observers(self.options)
+        declare_azimuths(self.options)
         declare_model(self.options, ["fidelity", "trip"])
 
     def setup(self) -> None:
         propeller, fidelity = self.options["propeller"], self.options["fidelity"]
         nc, ns = fidelity.n_chordwise, fidelity.n_spanwise
-        n_observers = len(self.options["observers"])
+        n_observers, n_azimuths = len(self.options["observers"]), self.options["n_azimuths"]
+        sections = (ns,) if n_azimuths is None else (n_azimuths, ns)
         blade = Blade.from_propeller(propeller)
         self.add_input("lattice_nodes", shape=(nc + 1, ns + 1, 3), units="m", tags=STATIC)
-        self.add_point_input("section_speed", shape=(ns,), units="m/s")
-        self.add_point_input("section_lift_coefficient", shape=(ns,))
+        self.add_point_input("section_speed", shape=sections, units="m/s")
+        self.add_point_input("section_lift_coefficient", shape=sections)
         self.add_input(
             "thickness_over_chord", val=np.asarray(blade.thickness_over_chord), tags=STATIC
         )

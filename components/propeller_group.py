@@ -108,8 +108,8 @@ design_lift_coefficient : (n_stations,) arrays
         power alone, neither loads nor noise are outputs, and the derivatives of missions are cheap.
     tilted : bool
         Flight at an incidence, some hundred times as long as the steady lattice of axial flight,
-        which is the default. All nodes are solved so, hover as well; broadband noise and the trim
-        "two_point" are of axial flight alone.
+        which is the default. All nodes are solved so, hover as well; the trim "two_point" is of
+        axial flight alone.
     fidelity : Fidelity
         Numbers of panels, wake nodes, azimuths and harmonics.
     trim : str
@@ -157,8 +157,8 @@ design_lift_coefficient : (n_stations,) arrays
     ValueError
         If `observers` are no positions, `rpm_bounds` are not positive and rising, control points do
         not fit the blade, or `broadband` is asked for without observers, `trip` without
-        `broadband`, a transition in inviscid flow or beside `polars`, or `tilted` with what is of
-        axial flight alone.
+        `broadband`, a transition in inviscid flow or beside `polars`, or `tilted` with
+        the trim "two_point".
     om.AnalysisError
         If a component has no result; with `num_nodes` the message has the node.
     """
@@ -189,8 +189,8 @@ design_lift_coefficient : (n_stations,) arrays
         is_heard = options["observers"] is not None
         if model.noise.broadband is not None and not is_heard:
             raise ValueError("broadband noise is heard at observers; there are none")
-        if options["tilted"]:
-            self._require_modelled(model)
+        if options["tilted"] and self._follows_thrust("two_point"):
+            raise ValueError('trim_method "two_point" is of axial flight: tilted must be False')
         polars = None
         if model.loads.viscous:
             polars = options["polars"]
@@ -205,15 +205,6 @@ design_lift_coefficient : (n_stations,) arrays
         self._add_loads(propeller, polars)
         if is_heard:
             self._add_noise(propeller, model)
-
-    def _require_modelled(self, model: Model) -> None:
-        """Refuse what is not modelled at an incidence."""
-        for what, asked in (
-            ("broadband noise", model.noise.broadband is not None),
-            ('trim_method "two_point"', self._follows_thrust("two_point")),
-        ):
-            if asked:
-                raise ValueError(f"tilted must be False for {what}, known in axial flight alone")
 
     def _follows_thrust(self, method: str) -> bool:
         """Whether the rotation speed follows from the thrust by a method."""
@@ -265,15 +256,13 @@ design_lift_coefficient : (n_stations,) arrays
 
     def _add_noise(self, propeller: Propeller, model: Model) -> None:
         """Tones, and broadband noise where it is asked for."""
-        shared = {name: self.options[name] for name in ("num_nodes", "observers", "fidelity")}
         fidelity, n_blades = model.fidelity, int(propeller.n_blades)
         tilted = self.options["tilted"]
-        tones = AcousticsComp(
-            n_blades=n_blades,
-            n_loads=n_loads(fidelity, tilted),
-            n_azimuths=azimuths_for(fidelity.n_azimuths, n_blades) if tilted else None,
-            **shared,
-        )
+        shared = {
+            **{name: self.options[name] for name in ("num_nodes", "observers", "fidelity")},
+            "n_azimuths": azimuths_for(fidelity.n_azimuths, n_blades) if tilted else None,
+        }
+        tones = AcousticsComp(n_blades=n_blades, n_loads=n_loads(fidelity, tilted), **shared)
         self.add_subsystem("acoustics", tones, promotes=["*"])
         if model.noise.broadband is None:
             return

@@ -47,16 +47,36 @@ def _positions_or_none(_: Any, observers: Any) -> Floats | None:
     return None if observers is None else require_positions(observers)
 
 
+def declare_azimuths(options: OptionsDictionary) -> None:
+    """Declare the azimuths of a turn around which sources change.
+
+    Parameters
+    ----------
+    options : OptionsDictionary
+        Options of a component.
+    """
+    options.declare(
+        "n_azimuths",
+        None,
+        types=int,
+        lower=2,
+        allow_none=True,
+        desc="azimuths of sources that change around the turn; None: steady ones, axial flight",
+    )
+
+
 def add_noise_inputs(component: NodesComp) -> None:
     """Declare the inputs that `noise_state` reads, and the observers.
 
     Parameters
     ----------
     component : NodesComp
-        Component in its ``setup``, with the option of `declare_observers`.
+        Component in its ``setup``, with the options of `declare_observers` and `declare_azimuths`.
     """
     component.add_point_input("rpm", val=4000.0, units="rpm")
     add_point_inputs(component, ["speed", "density", "sound_speed"])
+    if component.options["n_azimuths"] is not None:
+        add_point_inputs(component, ["incidence_deg"])
     observers = component.options["observers"]
     component.add_input("observer_position", val=observers, units="m", tags=STATIC)
 

@@ -177,7 +177,7 @@ def add_analyze(commands: argparse._SubParsersAction[Any]) -> None:
         metavar="FOLDER",
         help="blade, loads over span and polars; where there are observers spectrum, third octaves"
         " and pressure at that of the loudest tones, directivity of an arc, map of a hemisphere; at"
-        " an incidence the loads over the disk; as PNG",
+        " an incidence the loads over the disk and with --unsteady the wake; as PNG",
     )
     group.add_argument(
         "--figure-at",
@@ -196,7 +196,8 @@ def add_analyze(commands: argparse._SubParsersAction[Any]) -> None:
         type=Path,
         metavar="FOLDER",
         help="blades with pressure difference and forces of their panels, and wake with its"
-        " circulation, as files of VTK for ParaView; at an incidence at every azimuth",
+        " circulation, as files of VTK for ParaView; at an incidence at every azimuth, with"
+        " --unsteady at the end",
     )
 
 
@@ -341,7 +342,8 @@ def _write(
         from propmdao.figures.rotor.of_rotor import rotor_figures
 
         figures = rotor_figures(analysis, polars)
-        if len(analysis.listening.observers) or options.incidence_deg:
+        of_flow = options.incidence_deg or options.unsteady
+        if len(analysis.listening.observers) or of_flow:
             observer = None if options.figure_at is None else options.figure_at - 1
             figures |= analysis_figures(analysis, observer, options.figure_dba)
         written["figures"] = save_figures(options.figures, figures)

@@ -139,8 +139,7 @@ def print_analyses(analyses: Sequence[dict[str, Any]]) -> None:
         console.print(_levels(analyses))
         broadband = first["model"]["noise"]["broadband"]
         trip = "" if broadband is None else f", blades {TRIPPED[broadband['trip']]}"
-        around = Surroundings(**first["listening"]["surroundings"])
-        console.print(f"Levels: {around}{trip}.", highlight=False)
+        console.print(f"Levels: {_around(first)}{trip}.", highlight=False)
         if broadband is None:
             console.print(TONES_ONLY)
     else:
@@ -193,6 +192,17 @@ def _flight(result: dict[str, Any]) -> str:
     incidence = result["point"]["incidence_deg"]
     tilted = f" at an incidence of {incidence:g} deg" if incidence else ""
     return f"speed {result['speed']:.4g} m/s{tilted}"
+
+
+def _around(result: dict[str, Any]) -> str:
+    """Words for ground and air, and where a tilted flight goes whose shaft is upright."""
+    around = Surroundings(**result["listening"]["surroundings"])
+    incidence = result["point"]["incidence_deg"]
+    if not incidence or around.level_flight or around.ground in (None, "flush"):
+        return str(around)
+    climb = 90.0 - incidence
+    course = f"{'climbing' if climb > 0.0 else 'descending'} at {abs(climb):g} deg"
+    return f"{around}, shaft upright, {course if climb else 'flight along the ground'}"
 
 
 def _print_propeller(console: Console, result: dict[str, Any], condition: str) -> None:

@@ -9,11 +9,13 @@ import numpy as np
 
 from propmdao.acoustics.kinematics.observers import directions, on_map
 from propmdao.acoustics.levels.decibels import level_db, oaspl_db
+from propmdao.aerodynamics.solutions.marching.marched_loads import MarchedLoads
 from propmdao.aerodynamics.solutions.result import TiltedLoads
 from propmdao.analysis.results import MECHANISMS, Analysis
 from propmdao.analysis.self_noise import BANDS_HZ
 from propmdao.figures.directivity import directivity, hemisphere_map
 from propmdao.figures.flow.disks import disk_of_loads
+from propmdao.figures.flow.wakes import wake_picture
 from propmdao.figures.pressure import blade_passage, pressure
 from propmdao.figures.sound import Sound, band_levels, source_levels
 from propmdao.figures.spectra import harmonic_spectrum, narrowband_spectrum, third_octaves
@@ -45,29 +47,32 @@ def analysis_figures(
         "directivity" of an arc of three observers or more, "hemisphere" of a hemisphere. Further
         ones are numbered: "directivity_2", "hemisphere_2" ... . Observers without groups count as
         an arc where all are at one distance and azimuth. At an incidence also "disk", the loads
-        over the disk.
+        over the disk; of a march in time also "wake".
 
     Raises
     ------
     ValueError
-        If there are no observers and no incidence, there is no such observer, or the rotor stands
+        If there are no observers, no incidence and no march, no such observer, or the rotor stands
         still.
     """
     positions = analysis.listening.observers
     title = operation(analysis)
-    disk = {}
-    if isinstance(analysis.loads, TiltedLoads):
-        disk["disk"] = disk_of_loads(analysis.loads, f"{title}; seen from the thrust's side")
+    flow, loads = {}, analysis.loads
+    if isinstance(loads, TiltedLoads) and analysis.point.incidence_deg:
+        flow["disk"] = disk_of_loads(loads, f"{title}; seen from the thrust's side")
+    if isinstance(loads, MarchedLoads):
+        radius = 0.5 * analysis.changed_propeller.diameter
+        flow["wake"] = wake_picture(np.asarray(loads.wake), radius, title)
     if len(positions) == 0:
-        if not disk:
-            raise ValueError("figures need observers, or an incidence")
-        return disk
+        if not flow:
+            raise ValueError("figures need observers, an incidence or a march in time")
+        return flow
     if observer is None:
         observer = int(np.argmax(np.asarray(oaspl_db(analysis.tones.total))))
     if not 0 <= observer < len(positions):
         raise ValueError(f"observer must be within 0 ... {len(positions) - 1}; it is {observer}")
     sound = analysis_sound(analysis)
-    figures = disk | _at_observer(analysis, sound, observer)
+    figures = flow | _at_observer(analysis, sound, observer)
     levels = source_levels(sound, a_weighted)
     label = f"OASPL, {LEVEL_DBA if a_weighted else LEVEL}"
     numbers = {"directivity": 0, "hemisphere": 0}

@@ -23,8 +23,16 @@ AIR = pm.Air(density=1.225, dynamic_viscosity=1.225 * 1.516e-5)
 ELEVATION_DEG = (0.0, -22.5, -45.0)
 MICROPHONES = pm.arc(1.905, ELEVATION_DEG)
 SOURCES = ("thickness", "loading", "total")
+# Loading noise with other forces between the time steps, in `temporal_convergence.py`.
+STRAIGHT = "straight"
 SHOWN = {f"total {elevation:g}, dB": ".2f" for elevation in ELEVATION_DEG}
-SHOWN |= {"thickness -45, dB": ".2f", "loading -45, dB": ".2f", "BPF -45, dB": ".2f"}
+SHOWN |= {f"{source} -45, dB": ".2f" for source in ("BPF", "thickness", "loading", STRAIGHT)}
+
+
+def analysis_with(model: pm.Model) -> pm.Analysis:
+    """Analysis of the flight, with the microphones."""
+    point = pm.OperatingPoint(rpm=RPM, speed=SPEED, air=AIR)
+    return pm.analyze(PROPELLER, point, model=model, listening=pm.Listening(MICROPHONES))
 
 
 def levels_of(tones: Tones) -> dict[str, float]:
@@ -68,19 +76,24 @@ def report(
     """
     folder.mkdir(parents=True, exist_ok=True)
     write_csv(folder / f"{folder.name}.csv", rows)
-    show(rows, {**shown, **SHOWN})
+    show(rows, {**shown, **{name: form for name, form in SHOWN.items() if name in rows[0]}})
     names = ", ".join(f"{spread:.3f}" for spread in spreads_db(rows))
     print(f"Spread of the total OASPL at 0, -22.5 and -45 deg: {names} dB.")
     steps = [row[resolution] for row in rows]
     title = f"{PROPELLER.name}, {RPM:.0f} rpm, {SPEED:g} m/s, inviscid"
     of_run = {name: {"": [row[name] for row in rows]} for name in shown if name != resolution}
     save(refinement(steps, of_run, resolution, title), folder / "thrust.png")
+    labels = {source: f"{source}, dB" for source in SOURCES}
+    if f"{STRAIGHT} 0, dB" in rows[0]:
+        labels[STRAIGHT] = "loading, dB,\nstraight between steps"
     of_sources = {
-        f"{source}, dB re 20 µPa": {
+        label: {
             f"{elevation:g}°": [row[f"{source} {elevation:g}, dB"] for row in rows]
             for elevation in ELEVATION_DEG
         }
-        for source in SOURCES
+        for source, label in labels.items()
     }
-    save(refinement(steps, of_sources, resolution, f"{title}, OASPL"), folder / "oaspl.png")
+    save(
+        refinement(steps, of_sources, resolution, f"{title}; OASPL re 20 µPa"), folder / "oaspl.png"
+    )
     print(f"Table and figures: {folder}")

@@ -13,19 +13,19 @@ from typing import Any
 import discretisation
 from temporal_convergence import SCHEDULE, marched
 
-from propmdao.records.fidelity import Fidelity, Marching
+import propmdao as pm
+from propmdao.records.fidelity import Marching
 
 REVOLUTIONS = range(3, 11)
 SHOWN = {"revolutions": "d", "thrust, N": ".4f", "last turn, N": ".4f"}
 
 
-def compare(revolutions: Sequence[int], schedule: Marching, mesh: Fidelity) -> list[dict[str, Any]]:
+def compare(
+    revolutions: Sequence[int], schedule: Marching, mesh: pm.Fidelity
+) -> list[dict[str, Any]]:
     """Results for every number of revolutions."""
-    return [
-        {"revolutions": n}
-        | marched(dataclasses.replace(schedule, revolutions=n, average=n - 1), mesh)
-        for n in revolutions
-    ]
+    schedules = (dataclasses.replace(schedule, revolutions=n, average=n - 1) for n in revolutions)
+    return [{"revolutions": run.revolutions} | marched(run, mesh) for run in schedules]
 
 
 def main() -> None:
@@ -36,7 +36,7 @@ def main() -> None:
                         help="folder, default %(default)s")  # fmt: skip
     options = parser.parse_args()
     schedule = dataclasses.replace(SCHEDULE, timestep_deg=20.0) if options.quick else SCHEDULE
-    rows = compare(REVOLUTIONS[:2] if options.quick else REVOLUTIONS, schedule, Fidelity())
+    rows = compare(REVOLUTIONS[:2] if options.quick else REVOLUTIONS, schedule, pm.Fidelity())
     discretisation.report(rows, "revolutions", SHOWN, options.output.absolute())
 
 

@@ -21,17 +21,17 @@ from typing import Any
 import discretisation
 
 import propmdao as pm
-from propmdao.records.fidelity import Fidelity
 
 MESHES = ((25, 40), (33, 50), (41, 60), (49, 70), (57, 80), (57, 90), (57, 100),
           (65, 80), (65, 90), (65, 100))  # fmt: skip
+DEFAULT = pm.Fidelity()
 THESIS_SPREAD = "0.745, 0.719, 0.658"  # dB
 SHOWN = {"mesh": "", "thrust, N": ".4f", "run time, s": ".2f"}
 
 
-def mesh_of(tess_w: int, tess_u: int) -> Fidelity:
+def mesh_of(tess_w: int, tess_u: int) -> pm.Fidelity:
     """Surface and lattice of a tessellation."""
-    return Fidelity(
+    return pm.Fidelity(
         n_chordwise=(tess_w - 1) // 2,
         n_spanwise=tess_u - 1,
         n_contour=tess_w,
@@ -39,16 +39,12 @@ def mesh_of(tess_w: int, tess_u: int) -> Fidelity:
     )
 
 
-def result_of(name: str, mesh: Fidelity) -> dict[str, Any]:
+def result_of(name: str, mesh: pm.Fidelity) -> dict[str, Any]:
     """Thrust, run time and levels with a mesh."""
-    air = discretisation.AIR
     for _ in range(2):
         begun = time.perf_counter()
-        analysis = pm.analyze(
-            discretisation.PROPELLER,
-            pm.OperatingPoint(rpm=discretisation.RPM, speed=discretisation.SPEED, air=air),
-            model=pm.Model(loads=pm.LoadModel(viscous=False), fidelity=mesh),
-            listening=pm.Listening(discretisation.MICROPHONES),
+        analysis = discretisation.analysis_with(
+            pm.Model(loads=pm.LoadModel(viscous=False), fidelity=mesh)
         )
         seconds = time.perf_counter() - begun
     thrust = float(analysis.loads.thrust)
@@ -58,7 +54,7 @@ def result_of(name: str, mesh: Fidelity) -> dict[str, Any]:
 
 def compare(meshes: Sequence[tuple[int, int]]) -> list[dict[str, Any]]:
     """Results of the default and of the meshes."""
-    rows = [result_of("default", Fidelity())]
+    rows = [result_of("default", DEFAULT)]
     return rows + [result_of(f"{w} x {u}", mesh_of(w, u)) for w, u in meshes]
 
 

@@ -62,6 +62,26 @@ def test_analyze_passes_on_what_was_asked(
     assert asked.listening.surroundings == Surroundings(ground=9.0)
 
 
+@pytest.mark.parametrize(
+    ("options", "said"),
+    [
+        ("--incidence 70", "shaft upright, climbing at 20 deg"),
+        ("--incidence 90", "shaft upright, flight along the ground"),
+        ("--incidence 100", "shaft upright, descending at 10 deg"),
+        ("--incidence 70 --level", "level flight"),
+        ("--incidence 0", ""),
+    ],
+)
+def test_where_a_flight_over_the_ground_goes(
+    recorder: Any, capsys: pytest.CaptureFixture[str], options: str, said: str
+) -> None:
+    arguments = "--rpm 4000 --speed 9 --arc 1.905 0 --ground 9 --broadband".split()
+    assert main(["analyze", PROPELLER, *arguments, *options.split()]) == 0
+    printed = " ".join(capsys.readouterr().out.split())
+    said = f", {said}" if said else ""
+    assert f"Levels: hard ground 9 m below the hub{said}, blades untripped." in printed
+
+
 def test_air_that_absorbs_is_the_air_of_the_operating_point(recorder: Any) -> None:
     assert main(["analyze", PROPELLER, "--rpm", "4000", "--absorption", "-5", "40"]) == 0
     (asked,) = recorder.asked

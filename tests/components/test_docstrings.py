@@ -47,7 +47,7 @@ def systems(propeller, small, polars):
         "TrimmedAerodynamicsComp": [*both, tilted],
         "RotationSpeedComp": both,
         "AcousticsComp": [{**noise, "n_blades": 2, "n_loads": 3, "n_azimuths": 8}],
-        "BroadbandComp": [{**noise, "propeller": propeller}],
+        "BroadbandComp": [{**noise, "propeller": propeller, "n_azimuths": 8}],
         "NoiseObjectiveComp": [{"shape": 3}],
         "PropellerGroup": [
             {**noise, "propeller": propeller, "broadband": True},

@@ -54,7 +54,7 @@ def test_figures_of_what_there_is():
 
 
 def test_figures_need_observers_that_there_are():
-    with pytest.raises(ValueError, match="figures need observers, or an incidence"):
+    with pytest.raises(ValueError, match="figures need observers, an incidence or"):
         analysis_figures(analysis(np.zeros((0, 3))))
     for wrong in (-1, 3):
         with pytest.raises(ValueError, match=f"observer must be within 0 ... 2; it is {wrong}"):

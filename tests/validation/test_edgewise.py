@@ -9,10 +9,12 @@ are 1.8 and 6.1 %.
 """
 
 import csv
+import dataclasses
 
 import numpy as np
 import pytest
 
+from propmdao.aerodynamics.solutions.result import failure
 from propmdao.analysis.single_point import analyze
 from propmdao.propeller.description import Propeller
 from propmdao.records.fidelity import Fidelity
@@ -86,3 +88,16 @@ def test_even_beyond_what_a_propeller_does_there_is_a_solution(blade, rpm):
     # Advance ratios of 3.4 and 0.54: the air comes from behind over most of the retreating side.
     analysis = analyze(blade, rpm=rpm, speed=SPEED, incidence_deg=90.0, fidelity=COARSE)
     assert analysis.loads.converged and analysis.loads.thrust > 0.0
+
+
+@pytest.mark.parametrize("n_azimuths", [36, 48])
+def test_every_advance_ratio_up_to_a_half_has_a_solution(blade, n_azimuths):
+    fidelity = dataclasses.replace(COARSE, n_azimuths=n_azimuths)
+    failed, rpm = [], 8000.0
+    tip_speed = rpm * np.pi / 30 * 0.5 * blade.diameter
+    for ratio in (0.02, 0.05, 0.1, 0.15, 0.2, 0.25, 0.3, 0.35, 0.4, 0.45, 0.5):
+        speed = ratio * tip_speed
+        analysis = analyze(blade, rpm=rpm, speed=speed, incidence_deg=90.0, fidelity=fidelity)
+        if not analysis.loads.converged:
+            failed.append((ratio, failure(analysis.loads)))
+    assert not failed

@@ -1,7 +1,8 @@
 """What a rotor and its wake look like, with loads and circulation: surfaces for ParaView.
 
 All is in the axes of docs/conventions.md, which do not turn: blades stand where they are at their
-azimuth. The wake is the prescribed one of the solution, of the turns that `Fidelity` gives it.
+azimuth. The wake is the prescribed one of the solution, of the turns that `Fidelity` gives it, or
+that of a march, with loads and circulation of the mean of its last revolutions.
 """
 
 from __future__ import annotations
@@ -17,8 +18,9 @@ import numpy.typing as npt
 
 from propmdao.aerodynamics.lattice.rings import vortex_rings
 from propmdao.aerodynamics.rotor_geometry import RotorGeometry
+from propmdao.aerodynamics.solutions.marching.marched_loads import MarchedLoads
 from propmdao.aerodynamics.solutions.point_sums import panel_sums
-from propmdao.aerodynamics.solutions.result import TiltedLoads
+from propmdao.aerodynamics.solutions.result import RotorLoads, TiltedLoads
 from propmdao.aerodynamics.wakes.helical import helical_wake, wake_transport
 from propmdao.aerodynamics.wakes.history import history_weights
 from propmdao.aerodynamics.wakes.skewed import sideways_drift
@@ -53,7 +55,10 @@ class Scene:
 
 
 def scenes(analysis: Analysis) -> Iterator[Scene]:
-    """Rotor and wake of an analysis: once, or at an incidence at each azimuth of blade 1.
+    """Rotor and wake of an analysis, at one moment or several.
+
+    In axial flight one, at an incidence all azimuths of blade 1, of a march in time its snapshots
+    or, without any, its end.
 
     Parameters
     ----------
@@ -76,37 +81,64 @@ def scenes(analysis: Analysis) -> Iterator[Scene]:
     span = lattice_interpolation(propeller.r_over_R, fidelity.n_spanwise)
     nodes = lattice_nodes(Blade.from_propeller(propeller), span, fidelity.n_chordwise)
     rotor = RotorGeometry(nodes, 0.5 * propeller.diameter, int(propeller.n_blades))
-    loads, state = analysis.loads, analysis.state
-    tilted = isinstance(loads, TiltedLoads)
-    grid = fidelity.period_wake if tilted else fidelity.wake
-    transport = wake_transport(analysis.model.loads.wake, grid)
-    edge, w = vortex_rings(nodes).corner[-1], loads.induced_velocity
-    # Sheet by sheet: (n_blades, n_filaments, n_nodes, 3).
-    helix = np.asarray(helical_wake(edge, transport, rotor, state, w)).swapaxes(0, 1)
-    ages = np.asarray(transport.ages)
-    n = loads.circulation.shape[0] if tilted else 1
-    azimuths = 2.0 * np.pi * np.arange(n) / n
-    drift = np.asarray(sideways_drift(jnp.asarray(ages), jnp.asarray(azimuths), state))
-    values = _of_panels(np.asarray(nodes), analysis)
-    rings = _of_rings(analysis, ages)
+    ages, wakes = _marched_wakes(analysis.loads) or _prescribed_wakes(analysis, rotor)
+    values, rings = _of_panels(np.asarray(nodes), analysis), _of_rings(analysis, ages)
+    n = len(rings)
+    numbers = np.arange(rotor.n_blades)
     age_deg = np.degrees(0.5 * (ages[1:] + ages[:-1]))
-    for k, azimuth in enumerate(azimuths):
+    for azimuth, sheets in wakes:
+        k = round(azimuth / (2.0 * np.pi) * n) % n
         # Each blade has what blade 1 has where it stands.
-        of_blades = [(k + b * n // rotor.n_blades) % n for b in range(rotor.n_blades)]
-        at_blades = azimuth + 2.0 * np.pi * np.arange(rotor.n_blades) / rotor.n_blades
-        on_blades = {name: value[of_blades] for name, value in values.items()}
+        on_blades = {
+            name: value[(k + numbers * n // rotor.n_blades) % n] for name, value in values.items()
+        }
+        at_blades = azimuth + 2.0 * np.pi * numbers / rotor.n_blades
         on_blades["force_N"] = _turned(on_blades["force_N"], at_blades)
         in_wake = {
             "circulation_m2_per_s": rings[k],
             "age_deg": np.broadcast_to(age_deg, rings[k].shape),
         }
         lattices = _turned(np.stack([nodes] * rotor.n_blades), at_blades)
-        sheets = _turned(helix + drift[k], np.full(rotor.n_blades, azimuth))
         yield Scene(
             float(azimuth / (analysis.rpm * RAD_PER_S)),
             QuadMesh.of_sheets(lattices, on_blades),
             QuadMesh.of_sheets(sheets, in_wake),
         )
+
+
+# Ages of the wake's nodes [rad]; azimuths of blade 1, and nodes (n_blades, n_filaments, n_nodes, 3)
+# there, in the axes that do not turn.
+_Wakes = tuple[np.ndarray, list[tuple[float, np.ndarray]]]
+
+
+def _marched_wakes(loads: RotorLoads | TiltedLoads) -> _Wakes | None:
+    """Wakes of a march at its snapshots, or at its end; None of other solutions."""
+    if not isinstance(loads, MarchedLoads):
+        return None
+    wakes = list(zip(np.asarray(loads.snapshot_azimuth), np.asarray(loads.snapshots), strict=True))
+    if not wakes:
+        turns = loads.thrust_history.size / len(loads.circulation)
+        wakes = [(2.0 * np.pi * turns, np.asarray(loads.wake))]
+    return np.asarray(loads.wake_age), wakes
+
+
+def _prescribed_wakes(analysis: Analysis, rotor: RotorGeometry) -> _Wakes:
+    """Wakes of the steady solution, or at the azimuths of the periodic one."""
+    loads, state, fidelity = analysis.loads, analysis.state, analysis.model.fidelity
+    tilted = isinstance(loads, TiltedLoads)
+    grid = fidelity.period_wake if tilted else fidelity.wake
+    transport = wake_transport(analysis.model.loads.wake, grid)
+    ages = np.asarray(transport.ages)
+    edge, w = vortex_rings(rotor.nodes).corner[-1], loads.induced_velocity
+    # Sheet by sheet: (n_blades, n_filaments, n_nodes, 3).
+    helix = np.asarray(helical_wake(edge, transport, rotor, state, w)).swapaxes(0, 1)
+    n = loads.circulation.shape[0] if tilted else 1
+    azimuths = 2.0 * np.pi * np.arange(n) / n
+    drift = np.asarray(sideways_drift(jnp.asarray(ages), jnp.asarray(azimuths), state))
+    return ages, [
+        (azimuth, _turned(helix + drift[k], np.full(rotor.n_blades, azimuth)))
+        for k, azimuth in enumerate(azimuths)
+    ]
 
 
 def _of_panels(nodes: np.ndarray, analysis: Analysis) -> dict[str, np.ndarray]:
@@ -171,8 +203,8 @@ def write_scenes(folder: Path, analysis: Analysis) -> list[str]:
     Returns
     -------
     list of str
-        Files to open: blades.vtu and wake.vtu, or at an incidence blades.pvd and wake.pvd, which
-        play the files of all azimuths, blades_000.0.vtu and so on by the azimuth in degrees.
+        Files to open: blades.vtu and wake.vtu, or of several moments blades.pvd and wake.pvd, which
+        play the files of all of them, blades_0000.0.vtu and so on by the azimuth in degrees.
 
     Raises
     ------
@@ -182,13 +214,14 @@ def write_scenes(folder: Path, analysis: Analysis) -> list[str]:
         If the folder cannot be written.
     """
     moments = list(scenes(analysis))
+    turned_deg = [np.degrees(scene.time * analysis.rpm * RAD_PER_S) for scene in moments]
     with replacing_in(folder) as files:
         for part in ("blades", "wake"):
             meshes = [getattr(scene, part) for scene in moments]
             if len(meshes) == 1:
                 write_vtu(files / f"{part}.vtu", meshes[0])
                 continue
-            names = [f"{part}_{360.0 * k / len(meshes):05.1f}.vtu" for k in range(len(meshes))]
+            names = [f"{part}_{degrees:06.1f}.vtu" for degrees in turned_deg]
             for name, mesh in zip(names, meshes, strict=True):
                 write_vtu(files / name, mesh)
             times = (scene.time for scene in moments)

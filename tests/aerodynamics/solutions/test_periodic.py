@@ -128,6 +128,16 @@ def test_stalled_and_reversed_flow_has_a_solution(rotor, speed, incidence_deg):
     assert not behind[3 * N // 4].any()
 
 
+def test_the_guess_changes_nothing_but_the_work(rotor):
+    case = rotor(12.0, 90.0, viscous=True)
+    poor, wild = (periodic.solve(case, thrust) for thrust in (0.1, 300.0))
+    assert poor.converged and wild.converged
+    for name in ("thrust", "torque", "hub_force", "circulation"):
+        np.testing.assert_allclose(
+            getattr(poor, name), getattr(wild, name), rtol=1e-8, atol=1e-9, err_msg=name
+        )
+
+
 def test_what_does_not_agree_is_named_with_its_azimuth(rotor):
     loads = periodic.solve(rotor(12.0, 90.0, viscous=True))
     wrong = loads.sections.residual.at[3, 2].set(0.4)

@@ -2,9 +2,14 @@
 
 from __future__ import annotations
 
+import dataclasses
+
+import jax.numpy as jnp
+import numpy as np
 import pytest
 
 import propmdao as pm
+from propmdao.aerodynamics.solutions.marching.marched_loads import MarchedLoads
 from propmdao.analysis.single_point import analyze
 from propmdao.records.fidelity import Fidelity
 from propmdao.records.wake_law import WakeGrid
@@ -33,3 +38,23 @@ def edgewise():
 @pytest.fixture(scope="session")
 def axial():
     return coarse()
+
+
+@pytest.fixture(scope="session")
+def marched(edgewise):
+    """The same as if it had been marched for two revolutions, with a wake of random numbers."""
+    loads = edgewise.loads
+    fields = {field.name: getattr(loads, field.name) for field in dataclasses.fields(loads)}
+    wakes = jnp.asarray(np.random.default_rng(1).random((3, 2, 6, 4, 3)))
+    of_march = MarchedLoads(
+        **fields,
+        thrust_history=jnp.ones(16),
+        torque_history=jnp.ones(16),
+        change=jnp.zeros(1),
+        settled=jnp.asarray(True),
+        wake=wakes[2],
+        wake_age=jnp.array([0.0, 0.5, 1.0, 2.0]),
+        snapshots=wakes[:2],
+        snapshot_azimuth=jnp.array([np.pi, 2.0 * np.pi]),
+    )
+    return dataclasses.replace(edgewise, loads=of_march)

@@ -75,3 +75,11 @@ def test_an_analysis_at_an_incidence_has_a_map_without_observers(edgewise):
     assert set(figures) == {"disk"}
     said = "apcsf_11x4.7, 4200 rpm, 8 m/s at an incidence of 80°; seen from the thrust's side"
     assert figures["disk"].texts[0].get_text() == said
+
+
+def test_a_march_has_a_picture_of_its_wake(marched):
+    figures = analysis_figures(marched)
+    assert set(figures) == {"disk", "wake"}
+    tip = figures["wake"].axes[0].lines[-2]
+    nodes = np.asarray(marched.loads.wake)[1, -1]
+    np.testing.assert_allclose(tip.get_xdata(), nodes[:, 0] / 0.1397)

@@ -91,12 +91,29 @@ def test_files_are_those_of_the_azimuths(edgewise, axial, tmp_path):
     for part in ("blades", "wake"):
         root = ElementTree.parse(tmp_path / "tilted" / f"{part}.pvd").getroot()
         named = [element.attrib["file"] for element in root.iter("DataSet")]
-        assert named == [f"{part}_{45.0 * k:05.1f}.vtu" for k in range(8)]
+        assert named == [f"{part}_{45.0 * k:06.1f}.vtu" for k in range(8)]
         assert all((tmp_path / "tilted" / name).is_file() for name in named)
     files = write_scenes(tmp_path / "axial", axial)
     names = {"blades.vtu", "wake.vtu"}
     assert {path.name for path in (tmp_path / "axial").iterdir()} == names
     assert files == [str(tmp_path / "axial" / name) for name in sorted(names)]
+
+
+def test_of_a_march_the_wakes_are_its_own(marched):
+    first, last = scenes(marched)
+    loads = marched.loads
+    assert first.time == pytest.approx(60.0 / 4200.0 / 2.0) and last.time > first.time
+    np.testing.assert_array_equal(last.wake.points, loads.snapshots[1].reshape(-1, 3))
+    assert last.wake.values["age_deg"].max() < np.degrees(loads.wake_age[-1])
+    # At azimuth 180 blade 2 has what blade 1 has at 0.
+    of_blades = first.blades.values["circulation_m2_per_s"].reshape(2, -1)
+    np.testing.assert_allclose(of_blades[1], np.ravel(loads.circulation[0]))
+    ended = dataclasses.replace(
+        loads, snapshots=loads.snapshots[:0], snapshot_azimuth=loads.snapshot_azimuth[:0]
+    )
+    (end,) = scenes(dataclasses.replace(marched, loads=ended))
+    np.testing.assert_array_equal(end.wake.points, loads.wake.reshape(-1, 3))
+    assert end.time == pytest.approx(2.0 * 60.0 / 4200.0)
 
 
 def test_a_rotor_at_rest_has_no_scene(axial):

@@ -115,6 +115,7 @@ def march(
         change=jnp.asarray(change),
         settled=jnp.asarray(settled),
         wake=wake,
+        wake_age=jnp.asarray(flow.case.wake.ages),
         snapshots=nodes,
         snapshot_azimuth=jnp.asarray(azimuths),
     )

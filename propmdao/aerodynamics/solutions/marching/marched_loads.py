@@ -27,6 +27,8 @@ class MarchedLoads(TiltedLoads):
         Whether the revolutions of the mean change by no more than the tolerance.
     wake : (n_blades, n_filaments, n_nodes, 3) array
         Nodes of the wake of all blades at the end, in the axes of the rotor that do not turn [m].
+    wake_age : (n_nodes,) array
+        Azimuths by which the blade is ahead of the nodes [rad].
     snapshots : (n_snapshots, n_blades, n_filaments, n_nodes, 3) array
         The same at moments equally spaced over the march.
     snapshot_azimuth : (n_snapshots,) array
@@ -38,6 +40,7 @@ class MarchedLoads(TiltedLoads):
     change: Array
     settled: Array
     wake: Array
+    wake_age: Array
     snapshots: Array
     snapshot_azimuth: Array
 
