@@ -250,6 +250,10 @@ def _analyze(options: argparse.Namespace) -> None:
                 result["band"] = band(analysis, polars=polars if own else None).to_dict()
     results[0] |= _write(options, analyses[0], polars)
     _write_tables(options, results)
+    if options.figures is not None:
+        from propmdao.commands.output.results_folder import write_record
+
+        write_record(options.figures, options, {propeller.name: propeller}, results=results)
     if options.json:
         print_json(results if _is_list(options.rpm) else results[0])
     else:

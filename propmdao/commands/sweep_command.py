@@ -121,7 +121,7 @@ def add_sweep(commands: argparse._SubParsersAction[Any]) -> None:
         type=Path,
         metavar="FOLDER",
         help="CT, CP, efficiency and figure of merit over the one or two variables that vary, as"
-        " PNG",
+        " PNG, with record.json: inputs and versions",
     )
     add_observers(command)
     add_surroundings(command)
@@ -174,10 +174,12 @@ def _draw(
     columns: tuple[str, ...],
 ) -> list[str]:
     """Draw the points of this sweep that its table has results of."""
+    from propmdao.commands.output.results_folder import write_record
     from propmdao.figures.rotor.sweep_maps import SHOWN, sweep_maps
     from propmdao.formats.result_table import STATUS, table_files
     from propmdao.propeller.identity import checksum
 
+    write_record(options.figures, options, {propeller.name: propeller}, points=points)
     asked = {tuple(point[column] for column in columns) for point in points}
     file, _ = table_files(options.out)
     rows = []

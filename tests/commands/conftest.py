@@ -24,6 +24,10 @@ class Answer:
     request: Request
     polars: dict[str, str] = dataclasses.field(default_factory=dict)
 
+    @property
+    def listening(self) -> Any:
+        return self.request.listening
+
     def to_dict(self) -> dict[str, Any]:
         asked = self.request
         point = dict.fromkeys(["J", "torque", "shaft_power", "CT", "CQ", "CP"], 0.5)

@@ -100,3 +100,19 @@ def test_analyze_writes_tables_and_says_so(
     assert [row["rpm [rpm]"] for row in read(file)] == ["4000.0", "4000.0", "5000.0", "5000.0"]
     assert main([*asked, "--out", str(file), "--json"]) == 0
     assert json.loads(capsys.readouterr().out)[0]["tables"] == [str(file)]
+
+
+def test_a_folder_of_figures_says_what_they_were_made_of(
+    recorder: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    pytest.importorskip("matplotlib")
+    from propmdao.figures.rotor import of_rotor
+
+    monkeypatch.setattr(of_rotor, "rotor_figures", lambda analysis, polars: {})
+    asked = ["analyze", "apcsf_11x4.7", "--rpm", "4000", "--figures", str(tmp_path)]
+    assert main(asked) == 0
+    record = json.loads((tmp_path / "record.json").read_text())
+    assert record["arguments"] == asked and record["command"].startswith("propmdao analyze ")
+    assert record["results"][0]["rpm"] == 4000.0
+    assert record["propellers"]["apcsf_11x4.7"]["diameter"] == 0.2794
+    assert set(record["versions"]) == {"propmdao", "python", "jax", "numpy", "scipy", "openmdao"}
