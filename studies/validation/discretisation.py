@@ -58,6 +58,17 @@ def spreads_db(rows: Sequence[Mapping[str, Any]]) -> list[float]:
     ]
 
 
+def print_spread(rows: Sequence[Mapping[str, Any]]) -> None:
+    """Print by how much thrust and total levels differ."""
+    levels = ", ".join(f"{spread:.3f}" for spread in spreads_db(rows))
+    thrust = np.array([row["thrust, N"] for row in rows])
+    percent = 100.0 * np.ptp(thrust) / thrust.mean()
+    print(
+        f"From lowest to highest: thrust {percent:.2g} %, total OASPL at 0, -22.5 and -45 deg"
+        f" {levels} dB."
+    )
+
+
 def report(
     rows: Sequence[Mapping[str, Any]], resolution: str, shown: Mapping[str, str], folder: Path
 ) -> None:
@@ -77,8 +88,6 @@ def report(
     folder.mkdir(parents=True, exist_ok=True)
     write_csv(folder / f"{folder.name}.csv", rows)
     show(rows, {**shown, **{name: form for name, form in SHOWN.items() if name in rows[0]}})
-    names = ", ".join(f"{spread:.3f}" for spread in spreads_db(rows))
-    print(f"Spread of the total OASPL at 0, -22.5 and -45 deg: {names} dB.")
     steps = [row[resolution] for row in rows]
     title = f"{PROPELLER.name}, {RPM:.0f} rpm, {SPEED:g} m/s, inviscid"
     of_run = {name: {"": [row[name] for row in rows]} for name in shown if name != resolution}

@@ -38,6 +38,7 @@ def main() -> None:
     schedule = dataclasses.replace(SCHEDULE, timestep_deg=20.0) if options.quick else SCHEDULE
     rows = compare(REVOLUTIONS[:2] if options.quick else REVOLUTIONS, schedule, pm.Fidelity())
     discretisation.report(rows, "revolutions", SHOWN, options.output.absolute())
+    discretisation.print_spread(rows)
 
 
 if __name__ == "__main__":

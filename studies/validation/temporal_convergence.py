@@ -74,10 +74,10 @@ def straight_db(analysis: pm.Analysis, loads: PeriodicLoads) -> list[float]:
     blades = equally_spaced(analysis.propeller.n_blades)
     rotor = Rotor(blades, float(analysis.state.rotation_speed), loads=straight)
     flight = 0.0, 0.0, discretisation.SPEED
-    heard = rotor_tones(
+    tones = rotor_tones(
         rotor, flight, discretisation.AIR, discretisation.MICROPHONES, STRAIGHT_HARMONICS
     )
-    return [float(level) for level in oaspl_db(heard.total)]
+    return [float(level) for level in oaspl_db(tones.total)]
 
 
 def turned(force: Array, angle: np.ndarray) -> np.ndarray:
@@ -104,6 +104,7 @@ def main() -> None:
     options = parser.parse_args()
     rows = compare(TIMESTEPS_DEG[-2:] if options.quick else TIMESTEPS_DEG, pm.Fidelity())
     discretisation.report(rows, "time step, deg", SHOWN, options.output.absolute())
+    discretisation.print_spread(rows)
 
 
 if __name__ == "__main__":

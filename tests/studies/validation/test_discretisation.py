@@ -52,7 +52,7 @@ def test_spatial_study_writes_table_and_figures(import_study, monkeypatch, capsy
     assert thrust[2] != thrust[0] and all(0.4 < value < 0.6 for value in thrust)
     assert all(float(row["run time, s"]) > 0.0 for row in rows)
     assert {path.name for path in folder.iterdir()} == {"spatial.csv", "thrust.png", "oaspl.png"}
-    assert "Spread of the total OASPL" in capsys.readouterr().out
+    assert "From lowest to highest: thrust" in capsys.readouterr().out
 
 
 def test_spread_is_from_the_quietest_to_the_loudest(import_study):
