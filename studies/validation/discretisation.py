@@ -4,9 +4,10 @@ They are those of sections 4.3 to 4.5 of the thesis (tables 4.3 and 4.4): APC-SF
 thesis' geometry at 4003 rpm and J 0.525, inviscid, and an arc of 1.905 m at 0, -22.5 and -45 deg.
 """
 
+import argparse
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import Any
+from typing import Any, get_args
 
 import numpy as np
 from aerodynamic_validation import show, write_csv
@@ -16,6 +17,7 @@ from propmdao.acoustics.levels.decibels import oaspl_db, spl_db
 from propmdao.acoustics.signals import Tones
 from propmdao.figures.flow.refinement import refinement
 from propmdao.figures.style import save
+from propmdao.records.fidelity import Marching, Start
 
 PROPELLER = pm.load_propeller("apcsf_11x4.7_thesis")
 RPM, SPEED = 4003.0, 9.79
@@ -27,6 +29,14 @@ SOURCES = ("thickness", "loading", "total")
 STRAIGHT = "straight"
 SHOWN = {f"total {elevation:g}, dB": ".2f" for elevation in ELEVATION_DEG}
 SHOWN |= {f"{source} -45, dB": ".2f" for source in ("BPF", "thickness", "loading", STRAIGHT)}
+
+
+def add_start(parser: argparse.ArgumentParser, schedule: Marching) -> None:
+    """Add the option of how a march starts."""
+    parser.add_argument(
+        "--start", choices=get_args(Start), default=schedule.start,
+        help="from the wake of the steady solution or without any, default %(default)s",
+    )  # fmt: skip
 
 
 def analysis_with(model: pm.Model) -> pm.Analysis:
