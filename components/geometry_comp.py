@@ -110,8 +110,8 @@ class GeometryComp(JaxComponent):
     Raises
     ------
     om.AnalysisError
-        If an input or a result is not finite, the diameter or a chord not positive, or a thickness
-        not between 0 and 1 (splines can overshoot).
+        If an input or a result is not finite, the diameter or a chord not positive, at a station or
+        between, or a thickness not between 0 and 1 (splines can overshoot).
     """
 
     def initialize(self) -> None:
@@ -161,6 +161,15 @@ class GeometryComp(JaxComponent):
                 r = self.options["propeller"].r_over_R[station]
                 raise om.AnalysisError(
                     f"{name} must {rule}; station {station} (r/R {r:g}) has {value[station]:g}"
+                )
+        radii = self.constants[1]
+        for span in (radii.lattice, radii.surface):
+            between = np.asarray(span.smooth) @ chord
+            if not (between > 0.0).all():
+                place = int(np.argmin(between))
+                raise om.AnalysisError(
+                    "chord_over_R must be positive between stations, too; the spline through them"
+                    f" has {between[place]:.3g} at r/R {float(span.r_over_R[place]):.3g}"
                 )
         super().check_inputs(inputs)
 

@@ -1,4 +1,4 @@
-"""Command line: ``propmdao list`` and the commands that have files of their own.
+"""The command line: all commands, and what becomes of errors.
 
 Written with argparse because ``--arc RADIUS ELEVATION...`` takes any number of values, negative
 ones among them, which parsers that give every option a fixed number of values cannot read.
@@ -21,8 +21,10 @@ from propmdao.commands.designs.optimise_command import add_optimise
 from propmdao.commands.exchange.export_command import add_export
 from propmdao.commands.exchange.wopwop_command import add_wopwop
 from propmdao.commands.flyover_command import add_flyover
-from propmdao.commands.output.json_output import print_json
-from propmdao.commands.output.progress import tell_progress
+from propmdao.commands.inventory.catalogue_command import add_list, add_show
+from propmdao.commands.inventory.completion_command import add_completion
+from propmdao.commands.inventory.doctor_command import add_doctor
+from propmdao.commands.output.progress import tell_progress, telling_of_long_work
 from propmdao.commands.sweep_command import add_sweep
 from propmdao.runtime.output_files import reason_of
 from propmdao.runtime.terminal import print_line, printable
@@ -69,7 +71,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
             name = f"{parser.prog} {options.name}"
             tell_progress(getattr(options, "quiet", False))
             options.arguments = sys.argv[1:] if arguments is None else list(arguments)
-            options.command(options)
+            with telling_of_long_work(name):
+                options.command(options)
         finally:  # here, where its errors are caught: also after --help
             sys.stdout.flush()
     except ValueError as error:
@@ -116,15 +119,8 @@ def build_parser() -> argparse.ArgumentParser:
     parser.add_argument("--version", action="version", version=f"propmdao {propmdao.__version__}")
     commands = parser.add_subparsers(metavar="COMMAND", dest="name", required=True)
 
-    listing = commands.add_parser(
-        "list",
-        help="the propellers that ship with propmdao",
-        description="The propellers that ship with propmdao, by the names that analyze takes.",
-        allow_abbrev=False,
-    )
-    listing.set_defaults(command=_list)
-    listing.add_argument("--json", action="store_true", help="print JSON instead of a table")
-
+    add_list(commands)
+    add_show(commands)
     add_analyze(commands)
     add_compare(commands)
     add_optimise(commands)
@@ -132,18 +128,6 @@ def build_parser() -> argparse.ArgumentParser:
     add_flyover(commands)
     add_export(commands)
     add_wopwop(commands)
+    add_doctor(commands)
+    add_completion(commands, build_parser)
     return parser
-
-
-def _list(options: argparse.Namespace) -> None:
-    from propmdao.formats.propellers import load_propeller
-    from propmdao.propeller.catalog import catalog_names
-
-    propellers = [load_propeller(name) for name in catalog_names()]
-    if options.json:
-        keys = ("name", "diameter", "n_blades", "source")
-        print_json([{key: getattr(propeller, key) for key in keys} for propeller in propellers])
-    else:
-        from propmdao.commands import report
-
-        report.print_catalog(propellers)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import numpy.typing as npt
 
-from propmdao.figures.style import BLADE_COLORS, GRID, LINE_STYLES, literal, page
+from propmdao.figures.style import BLADE_COLORS, GRID, line_styles, literal, page
 from propmdao.geometry.blade import Blade, span_interpolation
 from propmdao.propeller.airfoils.airfoil import CHORD_FRACTION
 from propmdao.propeller.description import Propeller
@@ -42,9 +42,10 @@ def blade_comparison(
     spans: Any = grid[0].subgridspec(5, 1).subplots(sharex=True)
     sections: Any = grid[1].subgridspec(len(section_r_over_R), 1)
     sections = sections.subplots(sharex=True, sharey=True, squeeze=False)[:, 0]
+    styles = line_styles(propellers)
     for i, (name, propeller) in enumerate(propellers.items()):
         # The first on top: its dashes let what is equal shine through.
-        line = {"color": BLADE_COLORS[i], "linestyle": LINE_STYLES[i], "zorder": 4 - i}
+        line = {"color": BLADE_COLORS[i], "linestyle": styles[name], "zorder": 4 - i}
         _draw_spans(spans, propeller, linewidth=2.0, label=literal(name), **line)
         _draw_sections(sections, propeller, section_r_over_R, linewidth=2.0, **line)
     for axes in (*spans, *sections):

@@ -142,8 +142,8 @@ def propeller_from_text(text: str, label: str, folder: Path | None) -> Propeller
     for key in data:
         if key not in keys:
             near = difflib.get_close_matches(key, keys, n=1)
-            hint = f"did you mean '{near[0]}'?" if near else f"known: {', '.join(keys)}"
-            raise PropellerError(f"{label}: unknown key '{key}'; {hint}")
+            hint = f"did you mean '{near[0]}'? " if near else ""
+            raise PropellerError(f"{label}: unknown key '{key}'; {hint}known: {', '.join(keys)}")
     beta_from = data.pop("beta_from", BETA_FROM[0])
     try:
         data = in_own_units(data)

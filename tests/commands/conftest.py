@@ -78,6 +78,14 @@ class Recorder:
 
 
 @pytest.fixture
+def polar_text() -> str:
+    """Polar of a section as XFOIL writes it."""
+    head = " Mach = 0.000  Re = 0.100 e 6  Ncrit = 9.000\n alpha CL CD CDp CM\n --- --- ---\n"
+    lines = [f"{a} {0.1 * a + 0.3:.3f} 0.0200 0.0100 -0.0500\n" for a in range(-10, 13)]
+    return head + "".join(lines)
+
+
+@pytest.fixture
 def recorder(monkeypatch: pytest.MonkeyPatch) -> Recorder:
     recorder = Recorder()
     module = types.SimpleNamespace(analyze=recorder.analyze)

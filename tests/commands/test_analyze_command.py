@@ -9,7 +9,6 @@ import subprocess
 import sys
 from collections.abc import Callable
 from pathlib import Path
-from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -17,7 +16,6 @@ import pytest
 
 from propmdao.acoustics.kinematics.observers import arc
 from propmdao.analysis.request import Request
-from propmdao.analysis.uncertainty import Band, Effect
 from propmdao.commands.program import main
 from propmdao.propeller.changes import Change
 from propmdao.records.air import Air
@@ -25,20 +23,13 @@ from propmdao.records.fidelity import Marching
 from propmdao.records.listening import Surroundings
 from propmdao.records.models import (
     ElasticModel,
-    LoadModel,
     Model,
     NoiseModel,
     SelfNoiseModel,
-    Transition,
 )
 from propmdao.records.states import OperatingPoint
 
 PROPELLER = "apcsf_11x4.7_uiuc"
-POLAR = "\n".join(
-    [" Mach = 0.000  Re = 0.100 e 6  Ncrit = 9.000", " alpha CL CD CDp CM", " --- --- ---"]
-    + [f"{a} {0.1 * a + 0.3:.3f} 0.0200 0.0100 -0.0500" for a in range(-10, 13)]
-    + [""]
-)
 
 
 def run(*arguments: str, **environment: str) -> subprocess.CompletedProcess[str]:
@@ -106,53 +97,6 @@ def test_defaults_are_hover_in_standard_air_without_observers(recorder: Any) -> 
     assert asked.point.air == Air() and len(asked.listening.observers) == 0
 
 
-def test_sections_can_be_left_out_or_stall_as_in_two_dimensions(recorder: Any) -> None:
-    assert main(["analyze", PROPELLER, "--rpm", "4000", "--inviscid"]) == 0
-    assert main(["analyze", PROPELLER, "--rpm", "4000", "--no-stall-delay"]) == 0
-    inviscid, no_delay = (asked.model.loads for asked in recorder.asked)
-    assert inviscid == LoadModel(viscous=False) and recorder.polars[0] is None
-    assert no_delay == LoadModel(stall_delay=False) and recorder.polars[1] is not None
-
-
-def test_drag_can_be_left_as_computed(recorder: Any, capsys: pytest.CaptureFixture[str]) -> None:
-    for options in ([], ["--computed-drag"]):
-        assert main(["analyze", PROPELLER, "--rpm", "4000", "--json", *options]) == 0
-    level, computed = recorder.polars
-    assert recorder.asked[1].model.loads == LoadModel(measured_drag=False)
-    assert float((level.values - computed.values)[:, :, :, 1].max()) > 0.2
-    assert main(["analyze", PROPELLER, "--rpm", "4000", "--inviscid", "--computed-drag"]) == 2
-    assert "--inviscid has no sections" in capsys.readouterr().err
-
-
-def test_transition_is_of_the_polars_and_is_said(
-    recorder: Any, capsys: pytest.CaptureFixture[str]
-) -> None:
-    for given in ([], ["--n-crit", "9"], ["--trip-upper", "0.05", "--trip-lower", "0.05"]):
-        assert main(["analyze", PROPELLER, "--rpm", "4000", "--computed-drag", *given]) == 0
-    asked = [request.model.loads.transition for request in recorder.asked]
-    assert asked == [Transition(), Transition(9.0), Transition(None, 0.05, 0.05)]
-    drag = [np.asarray(polars.values[..., 1, :, :]).mean() for polars in recorder.polars]
-    assert drag[0] < drag[1] and drag[0] < drag[2]
-    printed = [line for line in capsys.readouterr().out.splitlines() if "Transition" in line]
-    assert printed == [
-        "Transition: n_crit 9.",
-        "Transition: n_crit 5, trips at x/c 0.05 (upper) and 0.05 (lower).",
-    ]
-
-
-def test_polars_of_ones_own_go_before_the_catalogue(
-    recorder: Any, tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    file = tmp_path / "mine.txt"
-    file.write_text(POLAR)
-    assert main(["analyze", PROPELLER, "--rpm", "4000", "--polar", "e63", str(file), "--json"]) == 0
-    said = json.loads(capsys.readouterr().out)["polars"]
-    assert main(["analyze", PROPELLER, "--rpm", "4000"]) == 0
-    own, shipped = recorder.polars
-    assert own.values.shape != shipped.values.shape
-    assert said["e63"] == str(file) and said["naca4412"] != str(file)
-
-
 @pytest.mark.parametrize(
     ("given", "rpm"),
     [
@@ -214,11 +158,11 @@ def test_levels_of_tones_of_broadband_noise_and_of_both_stand_side_by_side(
 
 @pytest.mark.parametrize("command", ["analyze", "export", "sweep"])
 def test_what_was_assumed_about_a_propeller_file_is_one_line(
-    recorder: Any, capsys: pytest.CaptureFixture[str], tmp_path: Path, command: str
+    recorder: Any, capsys: pytest.CaptureFixture[str], tmp_path: Path, command: str, polar_text: str
 ) -> None:
     file, polar = tmp_path / "mine_9x4.7_geom.txt", tmp_path / "polar.txt"
     file.write_text("r/R c/R beta\n0.2 0.15 30\n0.6 0.2 20\n1.0 0.05 10\n")
-    polar.write_text(POLAR)
+    polar.write_text(polar_text)
     arguments = {
         "analyze": ["--rpm", "4000", "--polar", "naca4412", str(polar)],
         "export": ["--to", str(tmp_path / "mine.toml")],
@@ -395,69 +339,6 @@ def test_help_explains_every_option(capsys: pytest.CaptureFixture[str]) -> None:
     for option in options.split():
         assert option in text
     assert "examples:" in text
-
-
-BAND = Band(
-    {"thrust": 1.5, "shaft_power": 0.5, "spl_bpf_db": [50.0, 50.0]},
-    (
-        Effect(
-            "blade angle", "deg", (-1.0, 1.0),
-            ({"thrust": -0.2, "shaft_power": -1.0, "spl_bpf_db": [-0.8, -0.7]},
-             {"thrust": 0.25, "shaft_power": 1.25, "spl_bpf_db": [0.75, 0.5]}),
-        ),
-        Effect("n_crit", "", (3.0, 9.0), (None, None), "there are no polars"),
-    ),
-    {"thrust": -0.2, "shaft_power": -1.0, "spl_bpf_db": [-0.8, -0.7]},
-    {"thrust": 0.25, "shaft_power": 1.25, "spl_bpf_db": [0.75, 0.5]},
-)  # fmt: skip
-
-
-@pytest.fixture
-def banded(recorder: Any, monkeypatch: pytest.MonkeyPatch) -> list[Any]:
-    """Polars that every band was asked for with, in place of its solutions."""
-    given: list[Any] = []
-
-    def band(analysis: Any, polars: Any) -> Band:
-        given.append(polars)
-        return BAND
-
-    module = SimpleNamespace(band=band)
-    monkeypatch.setitem(sys.modules, "propmdao.analysis.uncertainty", module)
-    return given
-
-
-def test_band_is_printed_beside_the_numbers_with_what_it_lacks(
-    banded: list[Any], capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setenv("COLUMNS", "80")
-    asked = ["analyze", PROPELLER, "--rpm", "4000", "--rpm", "3000", "--arc", "2", "-45", "0"]
-    assert main([*asked, "--band"]) == 0
-    printed = capsys.readouterr().out
-    assert banded == [None, None]
-    assert printed.count("Band at") == 2 and "Band at 3000.0 rpm" in printed
-    lines = printed[printed.index("Band at") :].splitlines()
-    thrust = next(k for k, line in enumerate(lines) if "thrust, N" in line)
-    assert lines[thrust].split() == ["thrust,", "N", "1.500", "+0.25", "-", "+0.25"]
-    assert lines[thrust + 1].split() == ["-0.2", "-", "-0.2"]
-    beside = next(line for line in lines if "BPF dB, +0 deg" in line)
-    assert beside.split() == ["BPF", "dB,", "+0", "deg", "50.0", "+0.50", "-", "+0.50"]
-    assert "The band lacks n_crit: there are no polars." in printed
-    assert max(map(len, lines)) <= 80
-    assert main(asked) == 0
-    assert "Band" not in capsys.readouterr().out and len(banded) == 2
-
-
-def test_band_in_json_and_with_polars_of_ones_own(
-    banded: list[Any], recorder: Any, tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    file = tmp_path / "mine.txt"
-    file.write_text(POLAR)
-    polar = ["--polar", "e63", str(file)]
-    assert main(["analyze", PROPELLER, "--rpm", "4000", *polar, "--band", "--json"]) == 0
-    assert banded == [recorder.polars[0]]
-    band = json.loads(capsys.readouterr().out)["band"]
-    assert band == BAND.to_dict()
-    assert band["effects"][1]["changes"] == [None, None]
 
 
 def test_a_march_is_asked_for_by_its_options(recorder: Any) -> None:

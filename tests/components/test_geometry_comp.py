@@ -100,3 +100,13 @@ def test_blades_that_cannot_be_are_failed_analyses(problem, propeller, name, val
     prob.set_val(name, values)
     with pytest.raises(om.AnalysisError, match=message):
         prob.run_model()
+
+
+def test_a_chord_that_swings_below_zero_between_stations_is_a_failed_analysis(problem, propeller):
+    prob = problem(propeller=propeller)
+    # Large where the spline counts them against an edge of the lattice, small elsewhere.
+    edges = np.asarray(lattice_interpolation(propeller.r_over_R, 4).smooth)
+    weights = edges[np.argmin(edges.min(axis=1))]
+    prob.set_val("chord_over_R", np.where(weights < 0.0, 0.3, 0.002))
+    with pytest.raises(om.AnalysisError, match="positive between stations, too; .* at r/R"):
+        prob.run_model()

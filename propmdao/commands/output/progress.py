@@ -2,10 +2,15 @@
 
 from __future__ import annotations
 
+import contextlib
 import logging
+import sys
+import threading
+from collections.abc import Iterator
 
 from propmdao.runtime.terminal import print_line
 
+_PATIENCE = 2.0  # s
 LOGGER = logging.getLogger("propmdao")
 
 
@@ -39,3 +44,23 @@ def progress(text: str) -> None:
         One line.
     """
     LOGGER.info("%s", text)
+
+
+@contextlib.contextmanager
+def telling_of_long_work(name: str) -> Iterator[None]:
+    """Tell somebody at a terminal after two seconds that work goes on, and what may take so long.
+
+    Parameters
+    ----------
+    name : str
+        Name of the command, with which the line begins.
+    """
+    text = f"{name}: working; what a machine runs for the first time is compiled, up to a minute"
+    timer = threading.Timer(_PATIENCE, progress, [text])
+    timer.daemon = True
+    if sys.stderr is not None and sys.stderr.isatty():
+        timer.start()
+    try:
+        yield
+    finally:
+        timer.cancel()

@@ -23,6 +23,8 @@ if TYPE_CHECKING:
 
 #: What is drawn, by column, with its label.
 SHOWN = {"CT": "CT", "CP": "CP", "eta": "efficiency", "figure_of_merit": "figure of merit"}
+#: What a map shows from 0 on: a rotor that brakes is of no use, however much it brakes.
+_OF_USE = ("eta", "figure_of_merit")
 _MOST_LINES = 5  # of values of the second variable that are lines; more are a map
 
 Rows = Sequence[Mapping[str, float]]
@@ -82,7 +84,7 @@ def sweep_maps(rows: Rows, columns: Sequence[str], title: str = "") -> Figure:
     -------
     Figure
         Lines over the first variable, one for each value of the second; a map where these are more
-        than five.
+        than five, in which an efficiency or a figure of merit below 0 is 0.
     """
     figure = page(8.5)
     grid: Any = figure.subplots(2, 2, sharex=True)
@@ -122,6 +124,8 @@ def _draw_map(figure: Any, axes: Any, rows: Rows, names: tuple[str, str, str], l
     values: Floats = np.full((y.size, x.size), np.nan)
     for row in rows:
         values[np.searchsorted(y, row[second]), np.searchsorted(x, row[first])] = row[name]
+    if name in _OF_USE:
+        values = np.maximum(values, 0.0)
     drawn = np.ma.masked_invalid(values)
     if np.ptp(drawn.compressed()) < 1e-12:  # efficiency in hover
         axes.text(0.5, 0.5, f"{label} {drawn.min():g} everywhere", ha="center",
@@ -129,7 +133,8 @@ def _draw_map(figure: Any, axes: Any, rows: Rows, names: tuple[str, str, str], l
         return
     filled = axes.contourf(x, y, drawn, 10, cmap="viridis")
     lines = axes.contour(x, y, drawn, 10, colors="black", linewidths=0.6)
-    axes.clabel(lines, fontsize="small")
+    for text in axes.clabel(lines, fontsize="small"):
+        text.set_bbox({"facecolor": "white", "alpha": 0.7, "linewidth": 0.0, "pad": 0.5})
     figure.colorbar(filled, ax=axes, label=label, format="%g")
     axes.plot(*[grid.ravel() for grid in np.meshgrid(x, y)], ".", color="white", markersize=2)
 

@@ -1,0 +1,1 @@
+"""What there is: the catalogue, this installation, words for the shell."""
