@@ -17,7 +17,14 @@ import numpy as np
 from propmdao.acoustics.broadband.self_noise import SelfNoise
 from propmdao.analysis.elastic.deflections import Deflection
 from propmdao.analysis.request import Request
-from propmdao.records.quantities import ASKED, BROADBAND_LEVELS, LEVELS, RESULTS, Quantity
+from propmdao.records.quantities import (
+    ASKED,
+    BROADBAND_LEVELS,
+    HUB_LOADS,
+    LEVELS,
+    RESULTS,
+    Quantity,
+)
 
 FILE = Path(__file__).parent / "reference" / "analysis.schema.json"
 NUMBER, TEXT, YES_OR_NO = ({"type": name} for name in ("number", "string", "boolean"))
@@ -39,12 +46,9 @@ def schema() -> dict[str, Any]:
     found |= {"rho": _quantity(ASKED["density"], NUMBER)}
     special = {"converged": YES_OR_NO, "failure": {"type": ["string", "null"]}}
     found |= {name: _quantity(q, special.get(name, NUMBER)) for name, q in RESULTS.items()}
+    found |= {name: _quantity(q, VECTOR) for name, q in HUB_LOADS.items()}
     azimuth = {"azimuth_deg": NUMBER, "blade_force": VECTOR, "blade_moment": VECTOR}
-    tilted = {
-        "hub_force": VECTOR | {"description": "mean over a turn, at an incidence [N]"},
-        "hub_moment": VECTOR | {"description": "mean over a turn, at an incidence [N m]"},
-        "azimuths": _list(_object(azimuth, azimuth)),
-    }
+    tilted = {"azimuths": _list(_object(azimuth, azimuth))}
     properties = {
         "propeller": _object(propeller, propeller),
         **asked,
@@ -56,7 +60,8 @@ def schema() -> dict[str, Any]:
     }  # fmt: skip
     band = {"band": {"type": ["object", "null"], "description": "with --band"}}
     files = {name: {"description": f"with --{option}"}
-             for name, option in (("sound", "wav"), ("figures", "figures"))}  # fmt: skip
+             for name, option in (("sound", "wav"), ("figures", "figures"), ("vtk", "vtk"),
+                                  ("tables", "out and --spectra"))}  # fmt: skip
     return {
         "$schema": "https://json-schema.org/draft/2020-12/schema",
         "title": "propmdao analyze --json, one operating point",

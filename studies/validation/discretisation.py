@@ -4,9 +4,10 @@ They are those of sections 4.3 to 4.5 of the thesis (tables 4.3 and 4.4): APC-SF
 thesis' geometry at 4003 rpm and J 0.525, inviscid, and an arc of 1.905 m at 0, -22.5 and -45 deg.
 """
 
+import argparse
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import Any
+from typing import Any, get_args
 
 import numpy as np
 from aerodynamic_validation import show, write_csv
@@ -16,6 +17,7 @@ from propmdao.acoustics.levels.decibels import oaspl_db, spl_db
 from propmdao.acoustics.signals import Tones
 from propmdao.figures.flow.refinement import refinement
 from propmdao.figures.style import save
+from propmdao.records.fidelity import Marching, Start
 
 PROPELLER = pm.load_propeller("apcsf_11x4.7_thesis")
 RPM, SPEED = 4003.0, 9.79
@@ -27,6 +29,14 @@ SOURCES = ("thickness", "loading", "total")
 STRAIGHT = "straight"
 SHOWN = {f"total {elevation:g}, dB": ".2f" for elevation in ELEVATION_DEG}
 SHOWN |= {f"{source} -45, dB": ".2f" for source in ("BPF", "thickness", "loading", STRAIGHT)}
+
+
+def add_start(parser: argparse.ArgumentParser, schedule: Marching) -> None:
+    """Add the option of how a march starts."""
+    parser.add_argument(
+        "--start", choices=get_args(Start), default=schedule.start,
+        help="from the wake of the steady solution or without any, default %(default)s",
+    )  # fmt: skip
 
 
 def analysis_with(model: pm.Model) -> pm.Analysis:
@@ -58,6 +68,17 @@ def spreads_db(rows: Sequence[Mapping[str, Any]]) -> list[float]:
     ]
 
 
+def print_spread(rows: Sequence[Mapping[str, Any]]) -> None:
+    """Print by how much thrust and total levels differ."""
+    levels = ", ".join(f"{spread:.3f}" for spread in spreads_db(rows))
+    thrust = np.array([row["thrust, N"] for row in rows])
+    percent = 100.0 * np.ptp(thrust) / thrust.mean()
+    print(
+        f"From lowest to highest: thrust {percent:.2g} %, total OASPL at 0, -22.5 and -45 deg"
+        f" {levels} dB."
+    )
+
+
 def report(
     rows: Sequence[Mapping[str, Any]], resolution: str, shown: Mapping[str, str], folder: Path
 ) -> None:
@@ -77,8 +98,6 @@ def report(
     folder.mkdir(parents=True, exist_ok=True)
     write_csv(folder / f"{folder.name}.csv", rows)
     show(rows, {**shown, **{name: form for name, form in SHOWN.items() if name in rows[0]}})
-    names = ", ".join(f"{spread:.3f}" for spread in spreads_db(rows))
-    print(f"Spread of the total OASPL at 0, -22.5 and -45 deg: {names} dB.")
     steps = [row[resolution] for row in rows]
     title = f"{PROPELLER.name}, {RPM:.0f} rpm, {SPEED:g} m/s, inviscid"
     of_run = {name: {"": [row[name] for row in rows]} for name in shown if name != resolution}

