@@ -26,12 +26,10 @@ from jax import Array
 from propmdao.aerodynamics.vortices.biot_savart import summed_velocities
 from propmdao.aerodynamics.vortices.cores import core_radius, middles
 from propmdao.aerodynamics.wakes.lags import lag_weights, read
-from propmdao.aerodynamics.wakes.sheets import Sheets, sheet_velocities
+from propmdao.aerodynamics.wakes.sheets import SINGLE, Sheets, fewer_filaments, sheet_velocities
 from propmdao.aerodynamics.wakes.skewed import sideways_drift
 from propmdao.records.pytrees import Scalar, record
 from propmdao.records.states import RotorState
-
-_SINGLE = np.float32  # wake on wake: 1e-5 of a velocity, at half the time
 
 
 @record
@@ -102,16 +100,11 @@ def free_filaments(
     FreeFilaments
         Every so many of the lattice's filaments, root and tip among them.
     """
-    n_edges = edge.shape[0]
-    chosen = np.unique(np.round(np.linspace(0, n_edges - 1, min(n_filaments, n_edges))).astype(int))
+    chosen, to_strips = fewer_filaments(edge, n_filaments)
     step = np.diff(np.asarray(edge), axis=0)
     place = np.concatenate([[0.0], np.cumsum(np.linalg.norm(step, axis=1))])
     identity = np.eye(chosen.size)
     to_lattice = np.stack([np.interp(place, place[chosen], row) for row in identity], axis=1)
-    width = np.diff(place)
-    to_strips = np.zeros((chosen.size - 1, n_edges - 1))
-    for k, (first, last) in enumerate(zip(chosen[:-1], chosen[1:], strict=True)):
-        to_strips[k, first:last] = width[first:last] / width[first:last].sum()
     x = np.clip(ages / (2.0 * np.pi) - free_turns, 0.0, 1.0)
     return FreeFilaments(
         edge[chosen],
@@ -303,7 +296,7 @@ def induced_at_nodes(
     start, end, circulation = bound
     lengths = sheets, start, end, jnp.full(circulation.size, free.core)
     flows = ring, coarse[0], circulation
-    scaled = jax.tree.map(lambda x: (x / length).astype(_SINGLE), (lengths, flows))
+    scaled = jax.tree.map(lambda x: (x / length).astype(SINGLE), (lengths, flows))
     (sheets, start, end, bound_core), (ring, present, circulation) = scaled
 
     def at_filament(points: Array) -> Array:

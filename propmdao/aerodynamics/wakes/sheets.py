@@ -9,11 +9,15 @@ from __future__ import annotations
 
 import jax
 import jax.numpy as jnp
+import numpy as np
 from jax import Array
 
 from propmdao.aerodynamics.vortices.biot_savart import segment_normalwash, summed_velocities
 from propmdao.aerodynamics.wakes.lags import shed
-from propmdao.records.pytrees import record
+from propmdao.records.pytrees import Scalar, record, static
+
+#: For what is far away or smoothed: 1e-5 of a velocity, at half the time.
+SINGLE = np.float32
 
 
 @record
@@ -32,6 +36,10 @@ class Sheets:
     trailing_core: Array
     shed_core: Array
 
+    def scaled(self, length: Scalar) -> Sheets:
+        """The sheets in lengths of one's own, in single precision."""
+        return jax.tree.map(lambda x: (x / length).astype(SINGLE), self)
+
     def youngest(self, n_rings: int) -> Sheets:
         """The part of the sheets next to the blades, so many rings long."""
         return Sheets(
@@ -39,6 +47,94 @@ class Sheets:
             self.trailing_core[:n_rings],
             self.shed_core[:n_rings],
         )
+
+
+@record
+class WakeParts:
+    """Parts of the sheets by age; the oldest has fewer filaments, and is in single precision.
+
+    Attributes
+    ----------
+    chosen : (n_chosen,) array of int
+        Filaments that are left, root and tip among them.
+    to_strips : (n_chosen - 1, ns) array
+        Weights from the circulation of the strips to that between them.
+    length : scalar
+        Length of the order of the rotor's [m].
+    n_young : int
+        Rings next to the blades that may depend on their present circulation: those younger than
+        two time steps and the next one.
+    n_near : int
+        Rings next to the blades with all filaments.
+    """
+
+    chosen: Array
+    to_strips: Array
+    length: Scalar
+    n_young: int = static()
+    n_near: int = static()
+
+
+def fewer_filaments(edge: Array, n_filaments: int) -> tuple[np.ndarray, np.ndarray]:
+    """Choose some of the filaments of a lattice; call it outside ``jit``.
+
+    Parameters
+    ----------
+    edge : (ns + 1, 3) array
+        Where the lattice's filaments leave blade 1 [m].
+    n_filaments : int
+        Filaments wanted; there are no more than those of the lattice.
+
+    Returns
+    -------
+    chosen, to_strips : (n_chosen,), (n_chosen - 1, ns) arrays
+        Filaments, root and tip among them, and weights from the circulation of the lattice's strips
+        to that between them: means over their width, which keep the impulse.
+    """
+    n_edges = edge.shape[0]
+    chosen = np.unique(np.round(np.linspace(0, n_edges - 1, min(n_filaments, n_edges))).astype(int))
+    width = np.linalg.norm(np.diff(np.asarray(edge), axis=0), axis=1)
+    to_strips = np.zeros((chosen.size - 1, n_edges - 1))
+    for k, (first, last) in enumerate(zip(chosen[:-1], chosen[1:], strict=True)):
+        to_strips[k, first:last] = width[first:last] / width[first:last].sum()
+    return chosen, to_strips
+
+
+def wake_velocities(
+    points: Array, sheets: Sheets, parts: WakeParts, ring: Array, present: Array
+) -> Array:
+    """Velocity at points by sheets whose older part has fewer filaments.
+
+    Parameters
+    ----------
+    points : (n_points, 3) array
+        Points at which the velocity is wanted [m].
+    sheets : Sheets
+        Sheets of ns strips behind all blades.
+    parts : WakeParts
+        Parts of the sheets.
+    ring : (n_blades, ns, n_rings) array
+        Circulation of their rings [m^2/s].
+    present : (n_blades, ns) array
+        Circulation of the strips of the blades [m^2/s].
+
+    Returns
+    -------
+    (3, n_points) array
+        Velocity [m/s].
+    """
+    n = parts.n_near
+    # Rings are closed on both sides of the cut: the near sheet ends with a ring of no circulation.
+    near = sheet_velocities(
+        points, sheets.youngest(n + 1), ring[..., : n + 1].at[..., n].set(0.0), present
+    )
+    older = Sheets(
+        sheets.nodes[parts.chosen, :, n:], sheets.trailing_core[n:], sheets.shed_core[n:]
+    ).scaled(parts.length)
+    strips = jnp.einsum("ks,bsr->bkr", parts.to_strips, ring[..., n:])
+    strips, places = (x.astype(SINGLE) for x in (strips / parts.length, points / parts.length))
+    none = jnp.zeros(strips.shape[:2], SINGLE)
+    return near + sheet_velocities(places, older, strips, none).astype(float)
 
 
 def sheet_velocities(points: Array, sheets: Sheets, ring: Array, present: Array) -> Array:

@@ -31,7 +31,12 @@ from propmdao.aerodynamics.solutions.period.lattice import (
 )
 from propmdao.aerodynamics.solutions.period.loads import PeriodOnset
 from propmdao.aerodynamics.wakes.lags import remembered
-from propmdao.aerodynamics.wakes.sheets import Sheets, normalwash_of_strips, sheet_velocities
+from propmdao.aerodynamics.wakes.sheets import (
+    Sheets,
+    WakeParts,
+    normalwash_of_strips,
+    wake_velocities,
+)
 from propmdao.records.air import Air
 from propmdao.records.pytrees import Scalar, record
 
@@ -124,8 +129,8 @@ def load_positions(lattice: MarchedLattice) -> Array:
 def step_loads(
     lattice: MarchedLattice,
     sheets: Sheets,
+    parts: WakeParts,
     lag: Array,
-    n_young: int,
     onset: PeriodOnset,
     past: Past,
     medium: tuple[Scalar, Air, ViscousSections | None],
@@ -138,11 +143,10 @@ def step_loads(
         Lattice of blade 1.
     sheets : Sheets
         Wake of all blades, seen from each blade that is marched (a leading axis of m).
+    parts : WakeParts
+        Parts of the wake.
     lag : (ns, n_rings) array
         Time since the rings of the wake were shed, in steps.
-    n_young : int
-        Number of rings that may depend on the present: those younger than two steps and the
-        next one.
     onset : PeriodOnset
         Air that meets the blades before their vortices act, with the blades in place of azimuths.
     past : Past
@@ -168,9 +172,9 @@ def step_loads(
 
     def at_collocation(place: tuple[Sheets, Array]) -> tuple[Array, Array]:
         seen, ring = place
-        velocity = sheet_velocities(collocation, seen, ring, still)
-        young = seen.youngest(n_young)
-        by_strips = normalwash_of_strips(collocation, normal, young, now[:, :n_young])
+        velocity = wake_velocities(collocation, seen, parts, ring, still)
+        young = seen.youngest(parts.n_young)
+        by_strips = normalwash_of_strips(collocation, normal, young, now[:, : parts.n_young])
         return jnp.einsum("cp,pc->p", velocity, normal), by_strips
 
     by_wake, by_strips = jax.lax.map(at_collocation, (sheets, seen_from_each(known, n_blades)))
@@ -201,7 +205,7 @@ def step_loads(
     )
     ring = known + now * strip[..., None]
     velocity += jax.lax.map(
-        lambda place: sheet_velocities(on_segments, *place),
+        lambda place: wake_velocities(on_segments, place[0], parts, *place[1:]),
         (sheets, seen_from_each(ring, n_blades), seen_from_each(strip, n_blades)),
     )
 

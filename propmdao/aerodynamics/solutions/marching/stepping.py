@@ -47,7 +47,7 @@ from propmdao.aerodynamics.wakes.momentum import (
     lowest_induced_velocity,
     momentum_induced_velocity,
 )
-from propmdao.aerodynamics.wakes.sheets import Sheets
+from propmdao.aerodynamics.wakes.sheets import Sheets, WakeParts, fewer_filaments
 from propmdao.aerodynamics.wakes.skewed import sideways_drift
 from propmdao.records.fidelity import Marching
 from propmdao.records.pytrees import Scalar, record, static
@@ -55,6 +55,8 @@ from propmdao.runtime.compilation import compiled
 
 # Azimuth by which the circulation of a wake may be older than its nodes: the last panels are short.
 _LONGEST_DELAY = np.radians(20.0)
+# Age from which on the wake has half as many filaments, but not fewer than so many.
+_FAR, _FEWEST = np.radians(90.0), 9
 
 
 @record
@@ -71,8 +73,8 @@ class MarchFlow:
         Time step [s].
     n_marched : int
         Blades that are marched: all, or one in axial flight.
-    n_young : int
-        Rings of the wake that may depend on the present, see `step_loads`.
+    parts : WakeParts
+        Parts of the wake.
     free : FreeFilaments or None
         Filaments of a free wake; None where it is prescribed.
     """
@@ -80,9 +82,9 @@ class MarchFlow:
     case: RotorCase
     lattice: MarchedLattice
     timestep: Array
+    parts: WakeParts
     free: FreeFilaments | None
     n_marched: int = static()
-    n_young: int = static()
 
 
 @record
@@ -150,14 +152,19 @@ def march_flow(case: RotorCase, schedule: Marching) -> MarchFlow:
     timestep = jnp.asarray(step / case.state.rotation_speed)
     n_marched = 1 if axial_flight else case.rotor.n_blades
     lattice, free = _lattice(case), None
+    edge = lattice.period.lattice.rings.corner[-1]
+    chosen, to_strips = fewer_filaments(edge, max(edge.shape[0] // 2 + 1, _FEWEST))
+    n_near = min(max(int((ages < _FAR).sum()), n_young), middle.size - 2)
+    parts = WakeParts(
+        jnp.asarray(chosen), jnp.asarray(to_strips), case.rotor.radius, n_young, n_near
+    )
     if schedule.wake_motion == "free":
         wanted = schedule.free_wake
         spacing = max(np.radians(wanted.step_deg), step)
         equal = spacing * np.arange(max(int(np.ceil(ages[-1] / spacing - 1e-9)), 3) + 1)
-        edge = lattice.period.lattice.rings.corner[-1]
         core = wanted.core * case.rotor.radius
         free = free_filaments(edge, equal, wanted.turns, core, wanted.n_filaments)
-    return MarchFlow(case, lattice, timestep, free, n_marched, n_young)
+    return MarchFlow(case, lattice, timestep, parts, free, n_marched)
 
 
 @compiled
@@ -181,9 +188,10 @@ def march_start(flow: MarchFlow, schedule: Marching) -> MarchState:
         State before the first step.
     """
     state = flow.case.state
-    ahead = dataclasses.replace(
-        state, speed=jnp.maximum(state.axial_speed, 0.0), incidence=jnp.asarray(0.0)
-    )
+    # Edgewise flight leaves some axial speed by rounding, and hover has momentum theory of its own.
+    tip_speed = state.rotation_speed * flow.case.rotor.radius
+    speed = jnp.where(state.axial_speed > 1e-9 * tip_speed, state.axial_speed, 0.0)
+    ahead = dataclasses.replace(state, speed=speed, incidence=jnp.asarray(0.0))
     steady = axial.solve(dataclasses.replace(flow.case, state=ahead))
     n, m = schedule.steps_per_turn, flow.n_marched
     ages = np.asarray(flow.case.wake.ages)
@@ -252,7 +260,13 @@ def advance(
     lag = (middles(ages) / omega + delay[:, None]) / flow.timestep
     medium = flow.timestep, rotor_state.air, case.sections
     loads = step_loads(
-        flow.lattice, _sheets(flow, state, azimuths), lag, flow.n_young, onset, state.past, medium
+        flow.lattice,
+        _sheets(flow, state, azimuths),
+        flow.parts,
+        lag,
+        onset,
+        state.past,
+        medium,
     )
     ns = onset.relative_speed.shape[1]
     past = Past(

@@ -19,7 +19,7 @@ from propmdao.aerodynamics.solutions.marching.step import Past, marched_lattice,
 from propmdao.aerodynamics.vortices.cores import middles
 from propmdao.aerodynamics.wakes.ages import wake_azimuths
 from propmdao.aerodynamics.wakes.history import shedding_delay
-from propmdao.aerodynamics.wakes.sheets import Sheets
+from propmdao.aerodynamics.wakes.sheets import Sheets, WakeParts, fewer_filaments
 from propmdao.geometry.lattice import lattice_chord_fraction
 from propmdao.records.air import Air
 from propmdao.records.wake_law import WakeGrid
@@ -60,12 +60,14 @@ def lift_after(half_chords_per_step, n_steps):
         turning_share=jnp.ones(NS),
     )
     n_young = min(int((np.asarray(middles(ages)) * CHORD < 2.0 * SPEED * dt).sum()) + 1, ages.size)
+    chosen, to_strips = fewer_filaments(edge, NS // 2 + 1)
+    parts = WakeParts(jnp.asarray(chosen), jnp.asarray(to_strips), SPAN, n_young, n_young + 10)
     n_lags = int(LENGTH * CHORD / (SPEED * dt)) + 8
     medium = dt, Air(density=DENSITY), None
 
     @jax.jit
     def step(past):
-        loads = step_loads(lattice, sheets, lag, n_young, onset, past, medium)
+        loads = step_loads(lattice, sheets, parts, lag, onset, past, medium)
         strips = jnp.concatenate([loads.circulation[None, :, -NS:], past.strips[:-1]])
         segments = loads.force[0, : NC * NS]
         rings = loads.force[0, -NS - NC * NS : -NS]
