@@ -34,7 +34,7 @@ from propmdao.components.inputs.rotor_inputs import (
     rotor_at,
 )
 from propmdao.records.fidelity import Fidelity
-from propmdao.records.quantities import RESULTS
+from propmdao.records.quantities import HUB_LOADS, RESULTS
 from propmdao.records.states import RotorState
 from propmdao.records.units import RAD_PER_S
 
@@ -168,15 +168,14 @@ class AerodynamicsComp(NodesComp, RootComponent):
             self.constants, wake=wake_transport(self.options["wake"], longer(grid))
         )
         self._add_rotation_speed()
-        for name in PERFORMANCE:
-            quantity = RESULTS[name]
-            self.add_point_output(
-                quantity.variable, units=quantity.unit or None, desc=quantity.meaning
-            )
+        results = [RESULTS[name] for name in PERFORMANCE]
         if tilted:
             add_point_inputs(self, ["incidence_deg"])
-            self.add_point_output("hub_force", shape=(3,), units="N", desc="+z is the shaft.")
-            self.add_point_output("hub_moment", shape=(3,), units="N*m", desc="+z is the shaft.")
+            results += HUB_LOADS.values()
+        for quantity in results:
+            shape = (len(quantity.axes),) if quantity.axes else ()
+            units, meaning = quantity.unit or None, quantity.meaning
+            self.add_point_output(quantity.variable, shape=shape, units=units, desc=meaning)
         if self.options["loads"]:
             self._add_loads(fidelity)
         self.search, self.function = _steady, _at_root
@@ -291,11 +290,9 @@ def loads_outputs(loads: RotorLoads | TiltedLoads, state: RotorState, inputs: Ar
         Outputs by name, and the rotation speed.
     """
     numbers = coefficients(loads.thrust, loads.torque, state, inputs["diameter"][0])
-    hub = {}
-    if isinstance(loads, TiltedLoads):
-        hub = {"hub_force": loads.hub_force, "hub_moment": loads.hub_moment}
+    hub = HUB_LOADS if isinstance(loads, TiltedLoads) else ()
     return {
-        **hub,
+        **{name: getattr(loads, name) for name in hub},
         "rpm": jnp.asarray(state.rotation_speed / RAD_PER_S)[None],
         "thrust": loads.thrust[None],
         "torque": loads.torque[None],

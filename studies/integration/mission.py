@@ -153,15 +153,15 @@ def main() -> None:
         print(f"blade angles at r/R {RADII}: {np.round(angles.ravel(), 2)} deg")
 
 
-def show(prob: om.Problem, names: tuple[str, ...]) -> None:
+def show(prob: om.Problem, names: tuple[str, ...], phase: str = "trajectory.climb") -> None:
     """Print a table of the trajectory."""
 
     def series(name: str) -> Any:
-        return prob.get_val(f"trajectory.climb.timeseries.{name}")[:, 0]
+        return prob.get_val(f"{phase}.timeseries.{name}")[:, 0]
 
-    print(" ".join(f"{name:>11}" for name in ("time", *names)))
+    print(" ".join(f"{name:>15}" for name in ("time", *names)))
     for row in zip(series("time"), *(series(name) for name in names), strict=True):
-        print(" ".join(f"{value:11.4g}" for value in row))
+        print(" ".join(f"{value:15.4g}" for value in row))
 
 
 if __name__ == "__main__":
