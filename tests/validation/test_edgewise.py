@@ -5,7 +5,7 @@ is listed, sweep included, with TWIST as the blade angle. The errors are sums of
 over sums of measured thrust for advance ratios V sin(i) / (Omega R) up to 0.31, each held from both
 sides. Aimed at: 4 % edgewise, 8 % at 60 deg. The second is missed by what the same blade has too
 much in hover, where wake and angles play no part; without its sweep hover is 3 % lower, and the two
-are 1.8 and 6.1 %.
+are 1.8 and 6.1 %; by the blade angle of the chord line they are 2.8 and 9.0 %.
 """
 
 import csv
@@ -68,7 +68,7 @@ def measured(reference_data, incidence_deg):
     return np.array([[float(row["rpm"]), float(row["thrust_n"])] for row in rows]).T
 
 
-@pytest.mark.parametrize(("incidence_deg", "error"), [(90.0, 2.5), (60.0, 8.6)])
+@pytest.mark.parametrize(("incidence_deg", "error"), [(90.0, 2.5), (60.0, 8.5)])
 def test_thrust_at_an_incidence(reference_data, blade, incidence_deg, error):
     rpm, thrust = measured(reference_data, incidence_deg)
     edgewise = SPEED * np.sin(np.radians(incidence_deg))
