@@ -29,7 +29,7 @@ POINT = OperatingPoint(rpm=6000.0, speed=10.0, incidence_deg=70.0)
 MESH = pm.Fidelity(n_chordwise=4, n_spanwise=16)
 SCHEDULE = Marching(revolutions=5, average=2, timestep_deg=10.0)
 QUICK_MESH = pm.Fidelity(n_chordwise=2, n_spanwise=6, period_wake=pm.WakeGrid(2.0, 2.0, 1.5, 30.0))
-FRAMES_PER_TURN = 18
+FRAMES_PER_TURN = 12
 
 
 def marched(
