@@ -55,8 +55,9 @@ from propmdao.runtime.compilation import compiled
 
 # Azimuth by which the circulation of a wake may be older than its nodes: the last panels are short.
 _LONGEST_DELAY = np.radians(20.0)
-# Age from which on the wake has half as many filaments, but not fewer than so many.
-_FAR, _FEWEST = np.radians(90.0), 9
+# Age from which on the wake has half as many filaments, but not fewer than so many: in hover it has
+# passed two blades by then, closely. From 90 deg on the thrust there would be 3 % higher.
+_FAR, _FEWEST = np.radians(450.0), 9
 
 
 @record
