@@ -123,7 +123,7 @@ def analyze(
     if listening.surroundings.absorption:
         require_known_air(point.air)
     if request.model.loads.unsteady is not None:
-        require_marchable(point, request.model)
+        require_marchable(point)
     if request.model.loads.elastic is not None:
         point.require_axial("an elastic blade")
     paths = sound_paths(listening.observers, listening.surroundings, point.incidence_deg)

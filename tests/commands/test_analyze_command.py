@@ -360,7 +360,6 @@ def test_a_march_is_asked_for_by_its_options(recorder: Any) -> None:
         ("--rpm 4000 --unsteady --elastic", "an elastic blade is known in steady flow alone"),
         ("--thrust 2 --unsteady", "a march in time needs rpm, not thrust"),
         ("--rpm 0 --unsteady", "a rotor that does not turn cannot be marched"),
-        ("--rpm 4000 --unsteady --broadband", "broadband noise of a march in time is not known"),
     ],
 )
 def test_what_cannot_be_marched_is_refused(

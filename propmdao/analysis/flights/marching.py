@@ -6,36 +6,36 @@ import dataclasses
 
 from propmdao.acoustics.kinematics.limits import require_subsonic_tip
 from propmdao.aerodynamics.solutions.case import RotorCase
+from propmdao.aerodynamics.solutions.edgewise import (
+    edgewise_advance_ratio,
+    is_slow,
+    longer,
+    warn_if_fast,
+)
 from propmdao.aerodynamics.solutions.marching.marched import march
 from propmdao.aerodynamics.solutions.marching.marched_loads import MarchedLoads, Progress
 from propmdao.aerodynamics.wakes.helical import wake_transport
 from propmdao.records.models import Model
 from propmdao.records.states import OperatingPoint, RotorState
 
-_SLOW, _LONGER = 0.05, 1.5  # advance ratio below which the wake has so many times the turns
 
-
-def require_marchable(point: OperatingPoint, model: Model) -> None:
+def require_marchable(point: OperatingPoint) -> None:
     """Refuse what cannot be marched, before the work.
 
     Parameters
     ----------
     point : OperatingPoint
         What is asked for.
-    model : Model
-        How it is modelled, with a march.
 
     Raises
     ------
     ValueError
-        If a thrust is asked for, a rotor at rest, or broadband noise.
+        If a thrust is asked for, or a rotor at rest.
     """
     if point.rpm is None:
         raise ValueError("a march in time needs rpm, not thrust: find the rpm without unsteady")
     if point.rpm == 0.0:
         raise ValueError("a rotor that does not turn cannot be marched: rpm must be above 0")
-    if model.noise.broadband is not None:
-        raise ValueError("broadband noise of a march in time is not known: leave out unsteady")
 
 
 def marched(
@@ -66,12 +66,9 @@ def marched(
     """
     assert model.loads.unsteady is not None and point.rotation_speed is not None
     state, radius = point.at(point.rotation_speed), float(case.rotor.radius)
-    # The fastest a blade gets: at an incidence, on the advancing side.
-    advancing = point.rotation_speed + float(state.edgewise_speed) / radius
-    require_subsonic_tip(radius, RotorState(advancing, abs(float(state.axial_speed)), state.air))
-    grid = model.fidelity.period_wake
-    if float(state.edgewise_speed) < _SLOW * point.rotation_speed * radius:
-        grid = dataclasses.replace(grid, turns=_LONGER * grid.turns)
-    wake = wake_transport(model.loads.wake, grid)
+    require_subsonic_tip(radius, state)
+    grid, ratio = model.fidelity.period_wake, edgewise_advance_ratio(state, radius)
+    warn_if_fast(ratio, stacklevel=4)
+    wake = wake_transport(model.loads.wake, longer(grid) if is_slow(ratio) else grid)
     case = dataclasses.replace(case.turning(point.rotation_speed), wake=wake)
     return march(case, model.loads.unsteady, progress), state
