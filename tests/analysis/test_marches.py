@@ -9,15 +9,15 @@ import propmdao as pm
 
 @pytest.mark.slow
 def test_noise_of_a_march_is_that_of_the_steady_solution():
-    asked = dict(
-        rpm=4200.0,
-        speed=4.0,
-        observers=pm.arc(1.905, [-45.0]),
-        broadband=True,
-        fidelity=pm.Fidelity(
+    asked = {
+        "rpm": 4200.0,
+        "speed": 4.0,
+        "observers": pm.arc(1.905, [-45.0]),
+        "broadband": True,
+        "fidelity": pm.Fidelity(
             n_chordwise=2, n_spanwise=8, n_contour=21, n_surface_span=12, n_harmonics=3
         ),
-    )
+    }
     propeller = pm.load_propeller("apcsf_11x4.7")
     steady = pm.analyze(propeller, **asked).to_dict()
     march = {"unsteady": True, "revolutions": 2, "average": 1, "timestep_deg": 15.0}

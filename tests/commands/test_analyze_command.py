@@ -237,7 +237,8 @@ def test_keys_are_those_promised() -> None:
     point = json.loads(result.stdout)
     assert list(point) == (
         "propeller point change model listening polars rpm speed rho J thrust torque shaft_power"
-        " CT CQ CP eta figure_of_merit converged failure deflection observers".split()
+        " CT CQ CP eta figure_of_merit converged failure deflection hub_force hub_moment"
+        " observers".split()
     )
     assert set(point["propeller"]) == {"name", "diameter", "n_blades", "checksum", "source"}
     assert set(point["point"]) == {"rpm", "thrust", "speed", "incidence_deg", "air"}
