@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import gc
 import os
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
@@ -32,6 +33,27 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
 def _openmdao_writes_elsewhere(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Keep OpenMDAO's output folders out of the folder that the tests are run from."""
     monkeypatch.setenv("OPENMDAO_WORKDIR", str(tmp_path))
+
+
+def _resident_bytes() -> int:
+    """Memory that the process holds; 0 where the system does not say."""
+    statm = Path("/proc/self/statm")
+    return int(statm.read_text().split()[1]) * os.sysconf("SC_PAGE_SIZE") if statm.exists() else 0
+
+
+_held = [0]  # memory held after compiled code was last let go
+
+
+@pytest.fixture(autouse=True, scope="module")
+def _compiled_code_fits_in_memory() -> Iterator[None]:
+    """Let compiled code go where it has grown large: all of the tests' is 7 GB a process."""
+    yield
+    if _resident_bytes() - _held[0] > 3 * 2**30:
+        import jax
+
+        jax.clear_caches()
+        gc.collect()
+        _held[0] = _resident_bytes()
 
 
 @pytest.fixture(scope="session")

@@ -10,13 +10,13 @@ import shlex
 from collections.abc import Mapping
 from importlib import metadata
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import propmdao
-from propmdao.propeller.description import Propeller
-from propmdao.propeller.identity import checksum
-from propmdao.records.plain import to_plain
 from propmdao.runtime.output_files import make_folder, replacing
+
+if TYPE_CHECKING:
+    from propmdao.propeller.description import Propeller
 
 RECORD = "record.json"
 _LIBRARIES = ("jax", "numpy", "scipy", "openmdao")
@@ -63,6 +63,10 @@ def write_record(
     OutputError
         If it cannot be written.
     """
+    # Slow to import, and not wanted for --help.
+    from propmdao.propeller.identity import checksum
+    from propmdao.records.plain import to_plain
+
     record = {
         "command": shlex.join(["propmdao", *options.arguments]),
         "arguments": list(options.arguments),

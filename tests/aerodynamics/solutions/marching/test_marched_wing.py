@@ -11,11 +11,11 @@ after s half chords of travel. The march of a rotor is that of a wing with a str
 import jax
 import jax.numpy as jnp
 import numpy as np
-from propmdao.aerodynamics.solutions.period_lattice import period_lattice
-from propmdao.aerodynamics.solutions.period_loads import PeriodOnset
 
 from propmdao.aerodynamics.rotor_geometry import RotorGeometry
 from propmdao.aerodynamics.solutions.marching.step import Past, marched_lattice, step_loads
+from propmdao.aerodynamics.solutions.period.lattice import period_lattice
+from propmdao.aerodynamics.solutions.period.loads import PeriodOnset
 from propmdao.aerodynamics.vortices.cores import middles
 from propmdao.aerodynamics.wakes.ages import wake_azimuths
 from propmdao.aerodynamics.wakes.history import shedding_delay
