@@ -49,6 +49,8 @@ def schema() -> dict[str, Any]:
     found |= {name: _quantity(q, VECTOR) for name, q in HUB_LOADS.items()}
     azimuth = {"azimuth_deg": NUMBER, "blade_force": VECTOR, "blade_moment": VECTOR}
     tilted = {"azimuths": _list(_object(azimuth, azimuth))}
+    revolution = {"thrust": NUMBER, "torque": NUMBER, "change": {"type": ["number", "null"]}}
+    marched = {"revolutions": _list(_object(revolution, revolution))}
     properties = {
         "propeller": _object(propeller, propeller),
         **asked,
@@ -65,7 +67,7 @@ def schema() -> dict[str, Any]:
     return {
         "$schema": "https://json-schema.org/draft/2020-12/schema",
         "title": "propmdao analyze --json, one operating point",
-        **_object(properties | tilted | band | files, properties),
+        **_object(properties | tilted | marched | band | files, properties),
     }
 
 

@@ -17,6 +17,7 @@ from propmdao.acoustics.levels.decibels import level_db, mean_square, oaspl_db, 
 from propmdao.acoustics.levels.weighting import level_dba, oaspl_dba
 from propmdao.acoustics.signals import Tones
 from propmdao.aerodynamics.coefficients import Coefficients
+from propmdao.aerodynamics.solutions.marching.marched_loads import MarchedLoads
 from propmdao.aerodynamics.solutions.result import RotorLoads, TiltedLoads, failure
 from propmdao.analysis.elastic.deflections import Deflection
 from propmdao.analysis.request import Request
@@ -120,7 +121,9 @@ class Analysis:
             sweep_over_R and rake_over_R of an elastic blade), hub_force [N] and hub_moment [N m],
             means over a turn in the axes of the rotor that do not turn, and a list of observers
             with their levels. At an incidence also azimuths, with force and moment of blade 1 at
-            each.
+            each; of a march its revolutions, with mean thrust [N] and torque [N m] and the change
+            of the thrust since the one before, root of the mean square over the turn, over that of
+            the thrust.
         """
         levels = jax.tree.map(np.asarray, _levels(self.tones))
         places = directions(self.listening.observers).rounded()
@@ -147,6 +150,7 @@ class Analysis:
             "deflection": to_plain(self.deflection),
             **{name: np.asarray(getattr(self.loads, name)).tolist() for name in HUB_LOADS},
             **self._around_the_turn(),
+            **self._over_revolutions(),
             "observers": [
                 {
                     "elevation_deg": float(places.elevation_deg[i]),
@@ -173,6 +177,20 @@ class Analysis:
                 }
                 for number, (force, moment) in enumerate(zip(*vectors, strict=True))
             ],
+        }
+
+    def _over_revolutions(self) -> dict[str, Any]:
+        """Thrust and torque of each revolution of a march, and how far they repeat."""
+        loads = self.loads
+        if not isinstance(loads, MarchedLoads):
+            return {}
+        change = [None, *np.asarray(loads.change).tolist()]
+        means = loads.thrust_by_revolution.tolist(), loads.torque_by_revolution.tolist()
+        return {
+            "revolutions": [
+                {"thrust": thrust, "torque": torque, "change": since}
+                for thrust, torque, since in zip(*means, change, strict=True)
+            ]
         }
 
     def _heard(self, i: int, levels: dict[str, np.ndarray]) -> dict[str, Any]:

@@ -10,6 +10,7 @@ from rich import box
 from rich.console import Console
 from rich.table import Table
 
+from propmdao.commands.output.marches import march_lines
 from propmdao.propeller.description import Propeller
 from propmdao.records.listening import Surroundings
 from propmdao.runtime.terminal import plain_console, print_line, printable
@@ -144,6 +145,8 @@ def print_analyses(analyses: Sequence[dict[str, Any]]) -> None:
             console.print(TONES_ONLY)
     else:
         console.print("No observers: --arc RADIUS ELEVATION... adds their noise.\n")
+    for line in march_lines(analyses):
+        print_line(line)
     print_doubts(analyses)
     _print_bands(console, analyses)
     print_files(first)

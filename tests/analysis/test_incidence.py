@@ -10,6 +10,7 @@ import propmdao as pm
 from propmdao.acoustics.broadband.rotor import rotor_self_noise
 from propmdao.acoustics.levels.decibels import level_db, mean_square
 from propmdao.aerodynamics.solutions.edgewise import FastEdgewiseWarning
+from propmdao.aerodynamics.solutions.marching.marched_loads import MarchedLoads
 from propmdao.analysis.flights.flyovers import fly_over
 from propmdao.analysis.self_noise import BANDS_HZ, strip_flow
 from propmdao.analysis.single_point import analyze
@@ -50,6 +51,27 @@ def test_hub_loads_and_those_of_the_azimuths_are_in_the_results(edgewise):
     assert [place["azimuth_deg"] for place in azimuths] == list(np.arange(0.0, 360.0, 45.0))
     mean = np.mean([place["blade_force"] for place in azimuths], axis=0)
     np.testing.assert_allclose(2.0 * mean, result["hub_force"], rtol=1e-12)
+
+
+def test_revolutions_of_a_march_are_in_the_results(edgewise):
+    assert "revolutions" not in edgewise.to_dict()
+    loads, thrust = edgewise.loads, np.repeat([3.0, 2.0], COARSE.n_azimuths)
+    none = jnp.zeros((0, 3))
+    of_march = MarchedLoads(
+        **{field.name: getattr(loads, field.name) for field in dataclasses.fields(loads)},
+        thrust_history=jnp.asarray(thrust),
+        torque_history=jnp.asarray(0.1 * thrust),
+        change=jnp.array([0.5]),
+        settled=jnp.asarray(False),
+        wake=none,
+        wake_age=none,
+        snapshots=none,
+        snapshot_azimuth=none,
+    )
+    assert dataclasses.replace(edgewise, loads=of_march).to_dict()["revolutions"] == [
+        {"thrust": 3.0, "torque": pytest.approx(0.3), "change": None},
+        {"thrust": 2.0, "torque": pytest.approx(0.2), "change": 0.5},
+    ]
 
 
 def test_the_hub_of_an_axial_rotor_feels_thrust_and_torque_alone():

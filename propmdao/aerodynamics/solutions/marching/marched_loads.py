@@ -45,6 +45,21 @@ class MarchedLoads(TiltedLoads):
     snapshot_azimuth: Array
 
     @property
+    def thrust_by_revolution(self) -> np.ndarray:
+        """Mean thrust of each revolution, (n_revolutions,) [N]."""
+        return self._by_revolution(self.thrust_history)
+
+    @property
+    def torque_by_revolution(self) -> np.ndarray:
+        """Mean torque of each revolution, (n_revolutions,) [N m]."""
+        return self._by_revolution(self.torque_history)
+
+    def _by_revolution(self, history: Array) -> np.ndarray:
+        steps_per_turn = len(self.blade_force)
+        of_turns: np.ndarray = np.asarray(history).reshape(-1, steps_per_turn).mean(axis=1)
+        return of_turns
+
+    @property
     def unsettled(self) -> str | None:
         """Why the revolutions are no mean that lasts, in one line; None where they are."""
         if self.settled:

@@ -76,6 +76,9 @@ def test_at_an_incidence_it_ends_in_the_periodic_solution(rotor, tilted):
     assert tilted.thrust == pytest.approx(float(period.thrust), rel=0.005)
     mean = float(jnp.linalg.norm(period.hub_force))
     np.testing.assert_allclose(tilted.hub_force, period.hub_force, atol=0.005 * mean)
+    # The mean of the last revolution, but for the blades' unsteady term, which is differenced.
+    assert tilted.thrust_by_revolution[-1] == pytest.approx(float(tilted.thrust), rel=1e-3)
+    assert tilted.torque_by_revolution[-1] == pytest.approx(float(tilted.torque), rel=5e-3)
     np.testing.assert_allclose(tilted.blade_force, period.blade_force, atol=0.01 * mean)
 
 
