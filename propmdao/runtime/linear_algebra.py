@@ -58,7 +58,7 @@ def inverse(matrices: Array) -> Array:
     Returns
     -------
     array, shape (..., n, n)
-        Their inverses.
+        Inverses of the matrices.
     """
     identity = jnp.eye(matrices.shape[-1])
     return jnp.vectorize(lambda matrix: solve(matrix, identity), signature="(n,n)->(n,n)")(matrices)

@@ -32,6 +32,7 @@ from propmdao.geometry.lattice import strip_middle
 from propmdao.records.air import Air
 from propmdao.records.pytrees import Scalar, record
 from propmdao.records.states import RotorState
+from propmdao.runtime import linear_algebra
 
 
 @record
@@ -208,7 +209,7 @@ def loads_with_wake(
 
     relative_speed = onset.relative_speed
     recambered = jnp.tile(jnp.diag(relative_speed), (nc, 1))
-    unit = jnp.linalg.solve(downwash.T, -jnp.column_stack([normalwash, recambered]))
+    unit = linear_algebra.solve(downwash.T, -jnp.column_stack([normalwash, recambered]))
     circulation, response = unit[:, 0], unit[:, 1:]
     # The last rings carry the circulation of their whole strip.
     strip_flow = StripFlow(strips, relative_speed, circulation[-ns:], response[-ns:])

@@ -23,6 +23,7 @@ from propmdao.aerodynamics.solutions.period.lattice import PeriodLattice, at_the
 from propmdao.aerodynamics.solutions.period.onset import PeriodOnset
 from propmdao.records.air import Air
 from propmdao.records.pytrees import Scalar, record
+from propmdao.runtime import linear_algebra
 
 
 @record
@@ -239,5 +240,5 @@ def _strip_circulation(
     size = n * ns
     matrix = jnp.eye(size) + coupled.reshape(size, size)
     right = jnp.column_stack([by_onset.ravel(), summed(same).reshape(size, size)])
-    unit = jnp.linalg.solve(matrix, -right)
+    unit = linear_algebra.solve(matrix, -right)
     return unit[:, 0].reshape(n, ns), unit[:, 1:]

@@ -23,6 +23,7 @@ from propmdao.aerodynamics.wakes.history import history_weights
 from propmdao.aerodynamics.wakes.sheets import velocities_of_strips
 from propmdao.geometry.lattice import strip_middle
 from propmdao.records.pytrees import record
+from propmdao.runtime import linear_algebra
 
 
 @record
@@ -176,7 +177,7 @@ def bound_inverse(lattice: PeriodLattice) -> Array:
     normalwash = jnp.einsum("bcrp,pc->bpr", on_panels, normal)
     n_blades = normalwash.shape[0]
     by_harmonic = n_blades * jnp.fft.ifft(normalwash, axis=0)
-    return jnp.fft.fft(jnp.linalg.inv(by_harmonic), axis=0).real / n_blades
+    return jnp.fft.fft(linear_algebra.inverse(by_harmonic), axis=0).real / n_blades
 
 
 def wake_normalwash(lattice: LatticeGeometry, wake: PeriodWake) -> Array:
