@@ -287,7 +287,7 @@ def induced_at_nodes(
     ring = read(jnp.broadcast_to(lag, (coarse.shape[2], lag.size)), coarse)
 
     ages = middles(free.ages), free.ages[:-1]
-    sheets = Sheets(nodes, *(core_radius(at, state, free.core) for at in ages))
+    sheets = Sheets(nodes, *(core_radius(age, state, free.core) for age in ages))
     # In lengths of the way from the axis to the tip, for single precision.
     length = jnp.linalg.norm(free.edge[-1, :2])
     start, end, circulation = bound

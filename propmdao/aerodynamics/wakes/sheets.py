@@ -163,7 +163,8 @@ def sheet_velocities(points: Array, sheets: Sheets, ring: Array, present: Array)
         Velocity [m/s].
     """
     rings, segments = (
-        of.swapaxes(0, 1).reshape(ring.shape[1], -1) for of in (ring, shed(ring, present))
+        strengths.swapaxes(0, 1).reshape(ring.shape[1], -1)
+        for strengths in (ring, shed(ring, present))
     )
     return velocities_of_strips(points, sheets.nodes, rings, segments, sheets.cores)
 
