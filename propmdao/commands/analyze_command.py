@@ -28,7 +28,8 @@ from propmdao.commands.output.output_files import (
     require_output_folder,
     save_figures,
 )
-from propmdao.commands.output.warning_lines import progress_line, warning_lines
+from propmdao.commands.output.progress import progress_line
+from propmdao.commands.output.warning_lines import warning_lines
 from propmdao.formats.endings import POLAR_READERS, described
 from propmdao.records.quantities import ASKED
 
