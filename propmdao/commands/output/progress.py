@@ -111,4 +111,7 @@ def progress_text(march: MarchProgress) -> str:
     """
     left = march.seconds_left
     time = "" if math.isnan(left) else f", {left:.0f} s left"
-    return f"step {march.step} of {march.n_steps}, CT {march.CT:.4f}{time}, {march.memory / 2**20:.0f} MiB"
+    return (
+        f"step {march.step} of {march.n_steps}, CT {march.CT:.4f}{time},"
+        f" {march.memory / 2**20:.0f} MiB"
+    )
