@@ -172,13 +172,13 @@ def write_pressure_csv(path: Path, results: Sequence[CaseResult]) -> None:
 
 
 def _print(groups: Sequence[dict[str, Any]]) -> None:
-    from rich import box
     from rich.table import Table
 
+    from propmdao.commands.output.tables import level_cell, narrow_table
     from propmdao.runtime.terminal import plain_console, printable
 
     def table(*headings: str) -> Table:
-        made = Table(box=box.SIMPLE, pad_edge=False, collapse_padding=True)
+        made = narrow_table()
         for heading in headings:
             made.add_column(heading, justify="right", overflow="fold")
         return made
@@ -203,7 +203,7 @@ def _print(groups: Sequence[dict[str, Any]]) -> None:
             overall.add_row(
                 str(observer["observer"]),
                 *map(_metres, observer["position"]),
-                *(_level(observer[key]) for key in keys),
+                *(level_cell(observer[key]) for key in keys),
                 "-" if loudest is None else f"{loudest['frequency_hz']:.1f}",
             )
         console.print(overall)
@@ -211,7 +211,7 @@ def _print(groups: Sequence[dict[str, Any]]) -> None:
         peaks = table("tone\nHz", "thickness\ndB", "loading\ndB", "total\ndB")
         for peak in top["peaks"]:
             frequency, *peak_levels = peak.values()
-            peaks.add_row(f"{frequency:.1f}", *map(_level, peak_levels))
+            peaks.add_row(f"{frequency:.1f}", *map(level_cell, peak_levels))
         console.print(f"Tones at observer {top['observer']}, the loudest:", highlight=False)
         console.print(peaks)
 
@@ -223,8 +223,3 @@ def _loudness(peak: dict[str, float]) -> float:
 def _metres(value: float) -> str:
     # Tenths of a millimetre: what rounding leaves of a sine or cosine is 0.
     return f"{round(value, 4) + 0.0:.5g}"
-
-
-def _level(value: float) -> str:
-    # Silence is -200 dB.
-    return f"{value:.1f}" if value > -199.0 else "-"
