@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-import csv
 from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -16,7 +15,7 @@ from propmdao.commands.designs.compared_analyses import ComparedAnalyses
 from propmdao.commands.designs.design_options import ASKED_OPTIONS
 from propmdao.commands.designs.design_search import TOLERANCE
 from propmdao.commands.observer_options import listening_of
-from propmdao.commands.output.output_files import save_figures
+from propmdao.commands.output.output_files import save_figures, write_csv
 from propmdao.commands.output.progress import progress
 from propmdao.commands.output.results_folder import file_name
 from propmdao.commands.output.warning_lines import warning_lines
@@ -27,7 +26,6 @@ from propmdao.formats.toml_files import write_toml
 from propmdao.propeller.description import Propeller
 from propmdao.propeller.design_choices import RESPONSES
 from propmdao.records.states import OperatingPoint
-from propmdao.runtime.output_files import replacing
 from propmdao.runtime.terminal import print_line
 
 if TYPE_CHECKING:
@@ -98,14 +96,14 @@ def write_results(
 
 def _write_history(path: Path, history: SearchHistory, label: str) -> None:
     """Write every design that was tried."""
-    with replacing(path) as file, file.open("w", newline="", encoding="utf-8") as stream:
-        writer = csv.writer(stream)
-        writer.writerow(["design", label, "largest violation, scaled", "violated, or failure"])
-        rows = zip(history.objective, history.violation, history.constraint, strict=True)
-        for number, (objective, violation, constraint) in enumerate(rows, start=1):
-            failed = not np.isfinite(violation)
-            numbers = ["", ""] if failed else [float(objective), float(violation)]
-            writer.writerow([number, *numbers, constraint])
+    rows: list[list[Any]] = []
+    designs = zip(history.objective, history.violation, history.constraint, strict=True)
+    for number, (objective, violation, constraint) in enumerate(designs, start=1):
+        failed = not np.isfinite(violation)
+        numbers = ["", ""] if failed else [float(objective), float(violation)]
+        rows.append([number, *numbers, constraint])
+    heads = ["design", label, "largest violation, scaled", "violated, or failure"]
+    write_csv(path, heads, rows)
 
 
 def _history_figure(history: SearchHistory, minimise: str, name: str) -> Figure:

@@ -3,16 +3,14 @@
 from __future__ import annotations
 
 import argparse
-import csv
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from propmdao.commands.options import add_command
 from propmdao.commands.output.json_output import print_json
-from propmdao.commands.output.output_files import require_output
+from propmdao.commands.output.output_files import require_output, write_csv
 from propmdao.commands.output.warning_lines import warning_lines
-from propmdao.runtime.output_files import replacing
 
 if TYPE_CHECKING:
     from propmdao.analysis.wopwop.foreign_case import CaseResult
@@ -155,20 +153,20 @@ def write_pressure_csv(path: Path, results: Sequence[CaseResult]) -> None:
     ValueError
         If the file cannot be written.
     """
-    with replacing(path) as file, file.open("w", newline="", encoding="utf-8") as stream:
-        out = csv.writer(stream)
-        out.writerow(
-            "case title observer time_s x_m y_m z_m thickness_pa loading_pa total_pa".split()
-        )
-        for result in results:
-            p = result.pressure
-            for i in range(len(p.time)):
-                rows = zip(
-                    p.time[i], *p.position[i].T, p.thickness[i], p.loading[i], p.total[i],
-                    strict=True,
-                )  # fmt: skip
-                for row in rows:
-                    out.writerow([result.case, result.observers, i + 1, *map(float, row)])
+    heads = "case title observer time_s x_m y_m z_m thickness_pa loading_pa total_pa".split()
+    write_csv(path, heads, _pressure_rows(results))
+
+
+def _pressure_rows(results: Sequence[CaseResult]) -> Iterator[list[Any]]:
+    """Cells of `write_pressure_csv`, one row after the other: there are many."""
+    for result in results:
+        p = result.pressure
+        for i in range(len(p.time)):
+            rows = zip(
+                p.time[i], *p.position[i].T, p.thickness[i], p.loading[i], p.total[i], strict=True
+            )
+            for row in rows:
+                yield [result.case, result.observers, i + 1, *map(float, row)]
 
 
 def _print(groups: Sequence[dict[str, Any]]) -> None:
