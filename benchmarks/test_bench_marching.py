@@ -14,8 +14,9 @@ from propmdao.aerodynamics.rotor_geometry import RotorGeometry
 from propmdao.aerodynamics.sections.laws import viscous_sections
 from propmdao.aerodynamics.sections.polars.propeller_polars import polars_for
 from propmdao.aerodynamics.solutions.case import RotorCase
+from propmdao.aerodynamics.solutions.marching.flow import march_flow
 from propmdao.aerodynamics.solutions.marching.marched import march
-from propmdao.aerodynamics.solutions.marching.stepping import advance, march_flow, march_start
+from propmdao.aerodynamics.solutions.marching.stepping import advance, march_start
 from propmdao.aerodynamics.wakes.helical import wake_transport
 from propmdao.geometry.blade import Blade
 from propmdao.geometry.lattice import lattice_interpolation, lattice_nodes, strip_interpolation

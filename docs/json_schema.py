@@ -50,7 +50,9 @@ def schema() -> dict[str, Any]:
     azimuth = {"azimuth_deg": NUMBER, "blade_force": VECTOR, "blade_moment": VECTOR}
     tilted = {"azimuths": _list(_object(azimuth, azimuth))}
     revolution = {"thrust": NUMBER, "torque": NUMBER, "change": {"type": ["number", "null"]}}
-    marched = {"revolutions": _list(_object(revolution, revolution))}
+    steps = {name: _list(NUMBER) for name in ("azimuth_deg", "thrust", "torque")}
+    marched = {"revolutions": _list(_object(revolution, revolution)),
+               "history": _object(steps, steps)}  # fmt: skip
     properties = {
         "propeller": _object(propeller, propeller),
         **asked,

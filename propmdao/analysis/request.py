@@ -10,7 +10,7 @@ import numpy.typing as npt
 
 from propmdao.propeller.changes import Change
 from propmdao.records.air import Air
-from propmdao.records.fidelity import Fidelity, Marching, Start, WakeMotion
+from propmdao.records.fidelity import Fidelity, GustShape, Marching, Start, WakeMotion
 from propmdao.records.listening import Listening, Surroundings
 from propmdao.records.models import (
     ElasticModel,
@@ -55,6 +55,10 @@ class Asked(TypedDict, total=False):
     revolutions: int
     average: int
     timestep_deg: float
+    gust_speed: float
+    gust_shape: GustShape
+    gust_start: float
+    gust_length: float
     start: Start
     wake_motion: WakeMotion
     broadband: bool

@@ -123,7 +123,7 @@ class Analysis:
             with their levels. At an incidence also azimuths, with force and moment of blade 1 at
             each; of a march its revolutions, with mean thrust [N] and torque [N m] and the change
             of the thrust since the one before, root of the mean square over the turn, over that of
-            the thrust.
+            the thrust, and its history: azimuth of blade 1, thrust and torque at each step.
         """
         levels = jax.tree.map(np.asarray, _levels(self.tones))
         places = directions(self.listening.observers).rounded()
@@ -185,12 +185,18 @@ class Analysis:
         if not isinstance(loads, MarchedLoads):
             return {}
         change = [None, *np.asarray(loads.change).tolist()]
+        step_deg = 360.0 / len(loads.blade_force)
         means = loads.thrust_by_revolution.tolist(), loads.torque_by_revolution.tolist()
         return {
             "revolutions": [
                 {"thrust": thrust, "torque": torque, "change": since}
                 for thrust, torque, since in zip(*means, change, strict=True)
-            ]
+            ],
+            "history": {
+                "azimuth_deg": (np.arange(loads.thrust_history.size) * step_deg).tolist(),
+                "thrust": np.asarray(loads.thrust_history).tolist(),
+                "torque": np.asarray(loads.torque_history).tolist(),
+            },
         }
 
     def _heard(self, i: int, levels: dict[str, np.ndarray]) -> dict[str, Any]:

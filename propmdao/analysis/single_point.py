@@ -96,8 +96,8 @@ def analyze(
         the air; twist_offset_deg, chord_factor, diameter, n_blades; viscous, stall_delay, n_crit,
         trip_upper, trip_lower, measured_drag, elastic, youngs_modulus, shear_modulus [Pa],
         material_density [kg/m^3], unsteady, revolutions, average, timestep_deg, start, wake_motion,
-        broadband, trip, fidelity; observers, (n, 3) positions [m] as
-        `propmdao.arc` makes them, surroundings.
+        gust_speed [m/s], gust_shape, gust_start, gust_length, broadband, trip, fidelity; observers,
+        (n, 3) positions [m] as `propmdao.arc` makes them, surroundings.
 
     Returns
     -------

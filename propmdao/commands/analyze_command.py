@@ -100,6 +100,10 @@ ASKED_OPTIONS = (
     "timestep_deg",
     "start",
     "wake_motion",
+    "gust_speed",
+    "gust_shape",
+    "gust_start",
+    "gust_length",
 )
 
 

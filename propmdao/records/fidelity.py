@@ -15,6 +15,8 @@ MOST_PANELS = 4096
 Start = Literal["steady", "impulsive"]
 #: How the wake moves: by the law of the steady solution, or with the local velocity.
 WakeMotion = Literal["prescribed", "free"]
+#: How a gust comes: it comes and goes, as 1-cos, or comes and stays.
+GustShape = Literal["cosine", "step"]
 
 
 @dataclasses.dataclass(frozen=True)
@@ -133,12 +135,19 @@ class Marching:
     stop_when_settled : bool
         Whether the march ends as soon as the revolutions of the mean, and the one before them,
         change no more.
+    gust_speed : float
+        Largest speed of a gust along the shaft, positive as the air of faster axial flight, which
+        on an upright shaft comes from above; 0 is no gust [m/s].
+    gust_shape : {"cosine", "step"}
+        The gust comes and goes as (1 - cos)/2, or comes likewise and stays.
+    gust_start, gust_length : float
+        Revolutions before the gust, and over which it comes and goes, or comes.
 
     Raises
     ------
     ValueError
-        If a number is out of range, the step does not divide a revolution, or more revolutions are
-        averaged than marched.
+        If a number is out of range, the step does not divide a revolution, more revolutions are
+        averaged than marched, or a gust is asked for that the steps do not show.
     """
 
     revolutions: int = 4
@@ -149,6 +158,10 @@ class Marching:
     free_wake: FreeWake = FreeWake()
     tolerance: float = 0.01
     stop_when_settled: bool = False
+    gust_speed: float = 0.0
+    gust_shape: GustShape = "cosine"
+    gust_start: float = 1.0
+    gust_length: float = 1.0
 
     def __post_init__(self) -> None:
         """Refuse schedules that cannot be kept."""
@@ -168,11 +181,34 @@ class Marching:
             raise ValueError(
                 f"timestep_deg must divide a revolution of 360 deg; it is {self.timestep_deg:.10g}"
             )
-        for name, words in (("start", Start), ("wake_motion", WakeMotion)):
+        known_words = ("start", Start), ("wake_motion", WakeMotion), ("gust_shape", GustShape)
+        for name, words in known_words:
             if getattr(self, name) not in get_args(words):
                 known = ", ".join(get_args(words))
                 raise ValueError(f"{name} must be one of {known}; it is {getattr(self, name)!r}")
         Range(0.0, 1.0).require("tolerance", self.tolerance)
+        self._check_gust()
+
+    def _check_gust(self) -> None:
+        """Refuse a gust that comes after the march or between its steps."""
+        for name in ("gust_speed", "gust_start", "gust_length"):
+            require_asked(name, getattr(self, name))
+        if self.gust_speed == 0.0:
+            for name in ("gust_shape", "gust_start", "gust_length"):
+                if getattr(self, name) != getattr(Marching, name):
+                    raise ValueError(f"{name} is about a gust: give gust_speed, too")
+            return
+        if not self.gust_start < self.revolutions:
+            raise ValueError(
+                f"gust_start must be below the revolutions of the march, {self.revolutions:g}; it"
+                f" is {self.gust_start:g}"
+            )
+        least = 4.0 / self.steps_per_turn
+        if self.gust_length < least:
+            raise ValueError(
+                f"gust_length must be at least four time steps, {least:.3g} revolutions; it is"
+                f" {self.gust_length:g}"
+            )
 
     @property
     def steps_per_turn(self) -> int:

@@ -250,6 +250,29 @@ _ASKED = (
         " freely, every node with the local velocity",
     ),
     Quantity(
+        "gust_speed", "m/s", "largest speed of a gust along the shaft, from ahead positive",
+        UNSTEADY, 0.0, per_node=False, option="--gust", placeholder="M_S",
+        help="a gust along the shaft in the march: its largest speed, positive from ahead, which on"
+        " an upright shaft is from above [m/s], default 0: none",
+        allowed=Range(-340.0, 340.0, "m/s"),
+    ),
+    Quantity(
+        "gust_shape", "", "how a gust comes", UNSTEADY, "cosine", per_node=False,
+        option="--gust-shape", placeholder="{cosine,step}",
+        help="the gust comes and goes, (1 - cos)/2 (default), or comes likewise and stays",
+    ),
+    Quantity(
+        "gust_start", "", "revolutions of a march before the gust", UNSTEADY, 1.0, per_node=False,
+        option="--gust-start", placeholder="N", help="revolutions before the gust, default 1",
+        allowed=Range(0.0, 1000.0),
+    ),
+    Quantity(
+        "gust_length", "", "revolutions over which a gust comes and goes, or comes", UNSTEADY, 1.0,
+        per_node=False, option="--gust-length", placeholder="N",
+        help="revolutions over which the gust comes and goes, or comes, default 1",
+        allowed=Range(0.001, 1000.0),
+    ),
+    Quantity(
         "broadband", "", "broadband self-noise beside the tones", "model.noise", False,
         per_node=False, option="--broadband", help="add the broadband self-noise to the tones",
     ),

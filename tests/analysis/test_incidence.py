@@ -67,11 +67,17 @@ def test_revolutions_of_a_march_are_in_the_results(edgewise):
         wake_age=none,
         snapshots=none,
         snapshot_azimuth=none,
+        average=2,
     )
-    assert dataclasses.replace(edgewise, loads=of_march).to_dict()["revolutions"] == [
+    result = dataclasses.replace(edgewise, loads=of_march).to_dict()
+    assert result["revolutions"] == [
         {"thrust": 3.0, "torque": pytest.approx(0.3), "change": None},
         {"thrust": 2.0, "torque": pytest.approx(0.2), "change": 0.5},
     ]
+    history = result["history"]
+    np.testing.assert_allclose(history["azimuth_deg"], 45.0 * np.arange(16.0))
+    assert history["thrust"] == thrust.tolist()
+    np.testing.assert_allclose(history["torque"], 0.1 * thrust)
 
 
 def test_the_hub_of_an_axial_rotor_feels_thrust_and_torque_alone():

@@ -334,6 +334,7 @@ def test_help_explains_every_option(capsys: pytest.CaptureFixture[str]) -> None:
     options += " --n-crit --trip-upper --trip-lower"
     options += " --elastic --youngs-modulus --shear-modulus --material-density"
     options += " --unsteady --revolutions --average --timestep --start --wake"
+    options += " --gust --gust-shape --gust-start --gust-length"
     options += " --arc --point --circle --hemisphere --grid --ground --level --absorption"
     options += " --broadband --trip --band --wav --seconds --full-scale --figures --figure-at"
     options += " --figure-dba --vtk --json --out --spectra --quiet"
@@ -347,6 +348,9 @@ def test_a_march_is_asked_for_by_its_options(recorder: Any) -> None:
     assert main([*arguments.split(), *"--timestep 10 --start impulsive --wake free".split()]) == 0
     asked = recorder.asked[-1].model.loads.unsteady
     assert asked == Marching(6, 2, 10.0, "impulsive", "free")
+    assert main([*arguments.split(), *"--gust -3 --gust-shape step --gust-start 2".split()]) == 0
+    asked = recorder.asked[-1].model.loads.unsteady
+    assert asked == Marching(6, 2, gust_speed=-3.0, gust_shape="step", gust_start=2.0)
     assert main(f"analyze {PROPELLER} --rpm 4000".split()) == 0
     assert recorder.asked[-1].model.loads.unsteady is None
 
@@ -358,6 +362,7 @@ def test_a_march_is_asked_for_by_its_options(recorder: Any) -> None:
         ("--rpm 4000 --unsteady --timestep 7", "timestep_deg must divide a revolution of 360 deg"),
         ("--rpm 4000 --unsteady --revolutions 0", "revolutions must be within 1 ... 1000; it is 0"),
         ("--rpm 4000 --unsteady --revolutions 2", "average must be at most the revolutions, 2"),
+        ("--rpm 4000 --unsteady --gust-length 2", "gust_length is about a gust: give gust_speed"),
         ("--rpm 4000 --unsteady --elastic", "an elastic blade is known in steady flow alone"),
         ("--thrust 2 --unsteady", "a march in time needs rpm, not thrust"),
         ("--rpm 0 --unsteady", "a rotor that does not turn cannot be marched"),

@@ -21,6 +21,16 @@ def test_steps_are_those_of_the_thesis():
         ({"revolutions": 2.5}, "revolutions must be a whole number; it is 2.5"),
         ({"average": 5}, "average must be at most the revolutions, 4; it is 5"),
         ({"start": "slow"}, "start must be one of steady, impulsive; it is 'slow'"),
+        ({"gust_start": 2.0}, "gust_start is about a gust: give gust_speed, too"),
+        (
+            {"gust_speed": 2.0, "gust_start": 4.0},
+            "gust_start must be below the revolutions of the march, 4; it is 4",
+        ),
+        (
+            {"gust_speed": 2.0, "gust_length": 0.02},
+            "gust_length must be at least four time steps, 0.0333 revolutions; it is 0.02",
+        ),
+        ({"gust_shape": "sharp"}, "gust_shape must be one of cosine, step; it is 'sharp'"),
         ({"wake_motion": "rigid"}, "wake_motion must be one of prescribed, free; it is 'rigid'"),
     ],
 )

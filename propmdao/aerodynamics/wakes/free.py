@@ -117,7 +117,11 @@ def free_filaments(
 
 
 def placed(
-    edge: Array, displacement: Array, ages: Array, azimuth: Array, state: RotorState
+    edge: Array,
+    displacement: Array,
+    shed: tuple[Array, Array],
+    azimuth: Array,
+    state: RotorState,
 ) -> Array:
     """Nodes of the wake of all blades, seen from one of them.
 
@@ -128,8 +132,9 @@ def placed(
     displacement : (n_blades, n_filaments, n_nodes, 3) array
         Displacement by induced velocities, in axes of the blade when the node was shed, of the
         blades from the one that sees them on [m].
-    ages : (n_nodes,) array
-        Azimuths of the nodes behind their blade [rad].
+    shed : tuple of (n_nodes,) arrays
+        Azimuths of the nodes behind their blade [rad], and the way along the shaft by which the
+        stream has carried them since [m].
     azimuth : float
         Azimuth of the blade that sees them [rad].
     state : RotorState
@@ -140,9 +145,8 @@ def placed(
     (n_filaments, n_blades, n_nodes, 3) array
         Nodes in the frame of the blade [m].
     """
-    n_blades = displacement.shape[0]
+    n_blades, (ages, downstream) = displacement.shape[0], shed
     nodes = spun(edge[:, None, :] + displacement, _behind(ages, n_blades))
-    downstream = state.axial_speed * ages / state.rotation_speed
     stream = sideways_drift(ages, azimuth[None], state)[0].at[:, 2].add(-downstream)
     return (nodes + stream).swapaxes(0, 1)
 

@@ -56,5 +56,6 @@ def marched(edgewise):
         wake_age=jnp.array([0.0, 0.5, 1.0, 2.0]),
         snapshots=wakes[:2],
         snapshot_azimuth=jnp.array([np.pi, 2.0 * np.pi]),
+        average=2,
     )
     return dataclasses.replace(edgewise, loads=of_march)

@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from propmdao.aerodynamics.solutions.case import RotorCase
-from propmdao.aerodynamics.solutions.marching.stepping import MarchFlow, StepTotals
+from propmdao.aerodynamics.solutions.marching.flow import MarchFlow
+from propmdao.aerodynamics.solutions.marching.stepping import StepTotals
 from propmdao.records.fidelity import Marching
 
 #: Memory that a march may need [bytes].

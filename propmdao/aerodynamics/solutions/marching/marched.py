@@ -18,6 +18,7 @@ import numpy as np
 from jax import Array
 
 from propmdao.aerodynamics.solutions.case import RotorCase
+from propmdao.aerodynamics.solutions.marching.flow import march_flow
 from propmdao.aerodynamics.solutions.marching.limits import (
     memory_needed,
     require_bounded,
@@ -31,12 +32,8 @@ from propmdao.aerodynamics.solutions.marching.marched_loads import (
 )
 from propmdao.aerodynamics.solutions.marching.mean import mean_loads
 from propmdao.aerodynamics.solutions.marching.step import StepLoads
-from propmdao.aerodynamics.solutions.marching.stepping import (
-    advance,
-    march_flow,
-    march_start,
-    resting_wake,
-)
+from propmdao.aerodynamics.solutions.marching.stepping import advance, march_start
+from propmdao.aerodynamics.solutions.marching.wake_places import resting_wake
 from propmdao.records.fidelity import Marching
 
 
@@ -118,6 +115,7 @@ def march(
         wake_age=jnp.asarray(flow.case.wake.ages),
         snapshots=nodes,
         snapshot_azimuth=jnp.asarray(azimuths),
+        average=schedule.average,
     )
 
 

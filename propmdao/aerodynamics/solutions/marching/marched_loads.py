@@ -9,7 +9,7 @@ import numpy as np
 from jax import Array
 
 from propmdao.aerodynamics.solutions.result import TiltedLoads
-from propmdao.records.pytrees import record
+from propmdao.records.pytrees import record, static
 
 
 @record
@@ -23,6 +23,8 @@ class MarchedLoads(TiltedLoads):
     change : (n_revolutions - 1,) array
         Change of the thrust from each revolution to the next, root of the mean square over the
         turn, over that of the thrust.
+    average : int
+        Revolutions of the mean.
     settled : bool
         Whether the revolutions of the mean change by no more than the tolerance.
     wake : (n_blades, n_filaments, n_nodes, 3) array
@@ -43,6 +45,7 @@ class MarchedLoads(TiltedLoads):
     wake_age: Array
     snapshots: Array
     snapshot_azimuth: Array
+    average: int = static()
 
     @property
     def thrust_by_revolution(self) -> np.ndarray:
@@ -66,9 +69,10 @@ class MarchedLoads(TiltedLoads):
             return None
         if not self.change.size:
             return "one revolution of a march does not show whether the loads repeat"
+        largest = float(self.change[-max(self.average - 1, 1) :].max())
         return (
-            f"thrust of the march changes by {100.0 * float(self.change[-1]):.2g} % from one"
-            " revolution to the next"
+            f"thrust of the march changes by {100.0 * largest:.2g} % from one revolution to the"
+            " next"
         )
 
 

@@ -5,8 +5,9 @@ import dataclasses
 import jax.numpy as jnp
 import pytest
 
+from propmdao.aerodynamics.solutions.marching.flow import march_flow
 from propmdao.aerodynamics.solutions.marching.limits import MarchError, require_bounded
-from propmdao.aerodynamics.solutions.marching.stepping import StepTotals, march_flow
+from propmdao.aerodynamics.solutions.marching.stepping import StepTotals
 from propmdao.records.fidelity import Marching
 
 SCHEDULE = Marching(timestep_deg=30.0, wake_motion="free")

@@ -1,12 +1,19 @@
-"""A wing that is set going at once: Wagner's function.
+"""A wing that is set going at once, and one that flies into a gust: Wagner and Kuessner.
 
 H. Wagner, Z. angew. Math. Mech. 5, 1925: of the final circulation about a flat plate the lift has
 half at once and all in the end, with Jones' approximation (NACA Report 681, 1940)
 
     phi(s) = 1 - 0.165 exp(-0.0455 s) - 0.335 exp(-0.3 s)
 
-after s half chords of travel. The march of a rotor is that of a wing with a straight wake.
+after s half chords of travel. Of the lift in a gust with a sharp edge there is none at first,
+with Sears' approximation (J. Aeronaut. Sci. 8, 1941) to the function of H. G. Kuessner (1936)
+
+    psi(s) = 1 - 0.5 exp(-0.13 s) - 0.5 exp(-s).
+
+The march of a rotor is that of a wing with a straight wake.
 """
+
+import dataclasses
 
 import jax
 import jax.numpy as jnp
@@ -35,8 +42,18 @@ def wagner(s):
     return 1.0 - 0.165 * np.exp(-0.0455 * s) - 0.335 * np.exp(-0.3 * s)
 
 
-def lift_after(half_chords_per_step, n_steps):
-    """Lift per span in the middle of a long wing at each step, over the final one."""
+def kuessner(s):
+    """Share of the final lift after s half chords in a gust."""
+    s = np.maximum(s, 0.0)
+    return 1.0 - 0.5 * np.exp(-0.13 * s) - 0.5 * np.exp(-s)
+
+
+def lift_after(half_chords_per_step, n_steps, gust_edge=None):
+    """Lift per span in the middle of a long wing at each step, over the final one.
+
+    The wing is set going at once, or it flies into a gust whose edge has the width given in
+    half chords and reaches the leading edge with its middle at the first step.
+    """
     eta = -np.cos(np.linspace(0.0, np.pi, NS + 1))
     # Leading to trailing edge along -z, span along x: the suction side looks to -y.
     z = -CHORD * lattice_chord_fraction(NC)[:, None] + 0.0 * eta
@@ -65,9 +82,18 @@ def lift_after(half_chords_per_step, n_steps):
     n_lags = int(LENGTH * CHORD / (SPEED * dt)) + 8
     medium = dt, Air(density=DENSITY), None
 
+    behind_nose = -2.0 / CHORD * lattice.period.lattice.points[:, 2]
+
+    def onset_at(number):
+        if gust_edge is None:
+            return onset
+        inside = (number * half_chords_per_step - behind_nose) / gust_edge + 0.5
+        upwash = -UPWASH * jnp.clip(inside, 0.0, 1.0)
+        return dataclasses.replace(onset, velocity=onset.velocity.at[:, 1].set(upwash))
+
     @jax.jit
-    def step(past):
-        loads = step_loads(lattice, sheets, parts, lag, onset, past, medium)
+    def step(past, number):
+        loads = step_loads(lattice, sheets, parts, lag, onset_at(number), past, medium)
         strips = jnp.concatenate([loads.circulation[None, :, -NS:], past.strips[:-1]])
         segments = loads.force[0, : NC * NS]
         rings = loads.force[0, -NS - NC * NS : -NS]
@@ -75,11 +101,11 @@ def lift_after(half_chords_per_step, n_steps):
         return Past(strips, jnp.stack([loads.circulation, past.rings[0]])), normal
 
     past = Past(jnp.zeros((n_lags, 1, NS)), jnp.zeros((2, 1, NC * NS)))
-    begun = step(past)[0].rings[0]
+    begun = step(past, 0.0)[0].rings[0]
     past = Past(past.strips, jnp.stack([begun, begun]))
     lift = []
-    for _ in range(n_steps):
-        past, normal = step(past)
+    for number in range(n_steps):
+        past, normal = step(past, number)
         lift.append(float(normal))
     width = float(nodes[0, MIDDLE + 1, 0] - nodes[0, MIDDLE, 0])
     final = 2.0 * np.pi * UPWASH / SPEED * 0.5 * DENSITY * SPEED**2 * CHORD * width
@@ -93,3 +119,16 @@ def test_lift_of_a_wing_that_is_set_going_is_wagners():
     found = lift_after(step, n_steps)
     # From the fifth step on: before, a step is a large part of the travel.
     np.testing.assert_allclose(found[4:], wagner(s)[4:], rtol=0.02)
+
+
+def test_lift_of_a_wing_that_flies_into_a_gust_is_kuessners():
+    step, n_steps, edge = 0.25, 48, 0.5
+    found = lift_after(step, n_steps, edge)
+    # The edge is as wide as two panels, and the function that of its mean.
+    s = step * np.arange(n_steps)[:, None] + edge * np.linspace(-0.5, 0.5, 101)
+    expected = kuessner(s).mean(axis=1)
+    # While it crosses the chord the lift jumps from panel to panel, and the rate of the circulation
+    # reaches back two steps.
+    crossing = s[:, 0] < 2.0 + 2.0 * step
+    np.testing.assert_allclose(found[~crossing], expected[~crossing], rtol=0.02)
+    np.testing.assert_allclose(found[crossing], expected[crossing], atol=0.15)
