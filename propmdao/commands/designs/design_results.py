@@ -80,7 +80,10 @@ def write_results(
     results = []
     for number, point in enumerate(points, start=1):
         suffix = "" if len(points) == 1 else f"_at_{number}"
-        progress(f"analysing both blades at {point.thrust:g} N, {point.speed:g} m/s")
+        where = f"{point.thrust:g} N, {point.speed:g} m/s"
+        if point.incidence_deg:
+            where += f", {point.incidence_deg:g} deg"
+        progress(f"analysing both blades at {where}")
         with warning_lines("optimise"):
             analyses = {
                 printable(blade.name): analyze(blade, point, listening=listening, **asked)
@@ -92,7 +95,7 @@ def write_results(
         for name, analysis in analyses.items():
             rows, columns[name] = operation_and_levels(analysis.to_dict(), observer or 0)
         if len(points) > 1:
-            print_line(f"At {point.thrust:g} N, {point.speed:g} m/s:")
+            print_line(f"At {where}:")
         print_comparison(rows, columns)
         report.print_doubts([analysis.to_dict() for analysis in analyses.values()])
         table = folder / f"comparison{suffix}.csv"
