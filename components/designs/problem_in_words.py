@@ -12,9 +12,14 @@ import numpy as np
 import numpy.typing as npt
 import openmdao.api as om
 
+from propmdao.components.designs.added_outputs import (
+    add_response,
+    add_thickness,
+    is_tilted,
+    output_name,
+)
 from propmdao.components.designs.span_constraints import LinearComp, chord_factors
 from propmdao.components.geometry_comp import blade_distributions
-from propmdao.components.noise_objective_comp import NoiseObjectiveComp
 from propmdao.components.propeller_group import PropellerGroup
 from propmdao.formats.propellers import load_propeller
 from propmdao.propeller.description import Propeller
@@ -58,7 +63,9 @@ def design_problem(
     propeller : Propeller, str or path
         The described propeller, a name of the catalogue or a propeller file.
     points : OperatingPoint or sequence of OperatingPoint
-        Operating points at a thrust, in axial flight; they share the blade.
+        Operating points at a thrust; they share the blade. With an incidence at any of them all
+        are solved around the turn, hover as well, which takes some hundred times as long; torque
+        and power are means over the turn then.
     observers : (n, 3) array, optional
         Positions of those who hear the noise that is minimised or limited [m].
     free : sequence of str, or mapping of str to (float, float)
@@ -101,6 +108,7 @@ def design_problem(
         propeller=propeller,
         num_nodes=None if len(points) == 1 else len(points),
         observers=observers if noisy else None,
+        tilted=is_tilted(points),
         broadband=any(response.has_broadband for response in responses.values()),
         design_distributions={FREE[word].distribution: radii for word in ranges},
         spline_method="cubic",
@@ -109,7 +117,7 @@ def design_problem(
     prob = om.Problem(reports=False)
     prob.model.add_subsystem("propeller", group, promotes=["*"])
     for word in responses:
-        _add_response(prob.model, word, points, n_observers, propeller)
+        add_response(prob.model, word, points, n_observers, propeller)
     # Tones, polars and the Mach number of the tip take the speed of sound in.
     takes_sound_speed = noisy or options.get("viscous", True) or "tip-mach" in responses
     _set_points(prob.model, points, bool(takes_sound_speed))
@@ -117,7 +125,7 @@ def design_problem(
     for word, range_ in ranges.items():
         _add_variable(prob.model, word, range_, radii, propeller, described)
     if "thickness" in limits:
-        _add_thickness(prob.model, float(limits.pop("thickness")), propeller, described)
+        add_thickness(prob.model, float(limits.pop("thickness")), propeller, described)
         for word in {"chord", "thickness"} - ranges.keys():
             name = FREE[word].distribution
             prob.model.set_input_defaults(name, np.asarray(described[name], float))
@@ -186,7 +194,6 @@ def require_words(
     for point in points:
         if point.thrust is None:
             raise ValueError("the operating points of a design are at a thrust, not at an rpm")
-        point.require_axial("a design problem")
     ranges = {}
     for word in free:
         _require_known("free", word, FREE)
@@ -225,54 +232,6 @@ def _require_known(kind: str, word: str, known: Iterable[str]) -> None:
         raise ValueError(f"{kind}: there is no '{word}'; there are {', '.join(known)}")
 
 
-def _name(word: str, n_points: int) -> str:
-    """Output of the model that a word stands for where it is minimised."""
-    response = RESPONSES[word]
-    averaged = response.is_noise or (n_points > 1 and response.may_be_minimised)
-    return f"mean_{word}" if averaged else response.output
-
-
-def _add_response(
-    model: om.Group,
-    word: str,
-    points: Sequence[OperatingPoint],
-    n_observers: int,
-    propeller: Propeller,
-) -> None:
-    """Add what the group does not have: levels over all observers, means, the tip's Mach number."""
-    response, n = RESPONSES[word], len(points)
-    if response.is_noise:
-        shape = (n_observers,) if n == 1 else (n, n_observers)
-        model.add_subsystem(
-            f"all_{word}",
-            NoiseObjectiveComp(shape=shape, exponent=1.0),
-            promotes_inputs=[("level_db", response.output)],
-            promotes_outputs=[("soft_maximum_db", _name(word, n))],
-        )
-    elif word == "tip-mach":
-        per_point = {"shape": n}
-        mach = om.ExecComp(
-            "tip_mach = ((0.5 * diameter * rotation_speed) ** 2 + speed**2) ** 0.5 / sound_speed",
-            tip_mach=per_point,
-            rotation_speed={**per_point, "units": "rad/s"},
-            diameter={"val": propeller.diameter, "units": "m"},
-            speed={**per_point, "units": "m/s"},
-            sound_speed={**per_point, "units": "m/s"},
-        )
-        inputs = ["diameter", "speed", "sound_speed", ("rotation_speed", "rpm")]
-        model.add_subsystem("tip", mach, promotes_inputs=inputs, promotes_outputs=["tip_mach"])
-        model.set_input_defaults("diameter", propeller.diameter, units="m")
-    elif n > 1:
-        unit = {"units": response.unit}
-        mean = om.ExecComp(f"mean = sum(each) / {n}", mean=unit, each={"shape": n, **unit})
-        model.add_subsystem(
-            f"all_{word}",
-            mean,
-            promotes_inputs=[("each", response.output)],
-            promotes_outputs=[("mean", _name(word, n))],
-        )
-
-
 def _set_points(model: om.Group, points: Sequence[OperatingPoint], has_sound_speed: bool) -> None:
     """Operating points as the inputs of the model."""
     values = {
@@ -280,6 +239,8 @@ def _set_points(model: om.Group, points: Sequence[OperatingPoint], has_sound_spe
         "density": ([point.air.density for point in points], "kg/m**3"),
         "thrust_required": ([point.thrust for point in points], "N"),
     }
+    if is_tilted(points):
+        values["incidence"] = ([point.incidence_deg for point in points], "deg")
     if has_sound_speed:
         values["sound_speed"] = ([point.air.sound_speed for point in points], "m/s")
     for name, (numbers, units) in values.items():
@@ -331,30 +292,6 @@ def _add_variable(
         )  # fmt: skip
 
 
-def _add_thickness(
-    model: om.Group, least: float, propeller: Propeller, described: Mapping[str, Floats]
-) -> None:
-    """Add the thickness of the sections in metres at the stations, and its limit."""
-    radius, n = 0.5 * propeller.diameter, len(propeller.r_over_R)
-    thickness = om.ExecComp(
-        "section_thickness = radius * chord * ratio",
-        has_diag_partials=True,
-        section_thickness={"shape": n, "units": "m"},
-        radius={"val": np.full(n, radius), "constant": True},
-        chord={"shape": n},
-        ratio={"shape": n},
-    )
-    model.add_subsystem(
-        "sections",
-        thickness,
-        promotes_inputs=[("chord", "chord_over_R"), ("ratio", "thickness_over_chord")],
-        promotes_outputs=["section_thickness"],
-    )
-    now = radius * np.asarray(described["chord_over_R"]) * described["thickness_over_chord"]
-    lower = np.minimum(least, now)
-    model.add_constraint("section_thickness", lower=lower, units="m", ref=least)
-
-
 def _finish(
     prob: om.Problem, minimise: str, limits: Mapping[str, float | str], n_points: int
 ) -> None:
@@ -373,13 +310,16 @@ def _finish(
         return _DB if response.is_noise else float(np.abs(value).max())
 
     for word, limit in limits.items():
-        response, name = RESPONSES[word], _name(word, 1)  # a limit holds at each operating point
+        response, name = (
+            RESPONSES[word],
+            output_name(word, 1),
+        )  # a limit holds at each operating point
         value = np.array(prob.get_val(name, units=response.unit or None))
         upper = value if limit == BASELINE else np.full(value.shape, float(limit))
         prob.model.add_constraint(
             name, upper=upper, units=response.unit or None, ref=scale(response, upper)
         )
-    name, response = _name(minimise, n_points), RESPONSES[minimise]
+    name, response = output_name(minimise, n_points), RESPONSES[minimise]
     value = np.array(prob.get_val(name, units=response.unit or None))
     prob.model.add_objective(name, units=response.unit or None, ref=scale(response, value))
     prob.setup(mode="rev")

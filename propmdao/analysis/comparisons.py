@@ -13,7 +13,9 @@ from rich import box
 from rich.table import Table
 
 from propmdao.acoustics.levels.decibels import energy_sum_db
+from propmdao.analysis.request import Request
 from propmdao.analysis.results import Analysis
+from propmdao.records.units import RAD_PER_S
 from propmdao.runtime.output_files import replacing
 from propmdao.runtime.terminal import plain_console
 
@@ -104,9 +106,8 @@ def operation_and_levels(
         Numbers by the keys of the rows.
     """
     values: dict[str, Cell] = {key: result[key] for _, key, _ in OPERATION if key in result}
-    air = result["point"]["air"]
-    tip_speed = math.pi * _diameter(result) * result["rpm"] / 60.0
-    values["tip_mach"] = math.hypot(tip_speed, result["speed"]) / air["sound_speed"]
+    state = Request.from_dict(result).point.at(result["rpm"] * RAD_PER_S)
+    values["tip_mach"] = float(state.tip_mach(0.5 * _diameter(result)))
     # Efficiency is 0 in hover, the figure of merit no measure of flight.
     left_out = "figure_of_merit" if result["speed"] else "eta"
     rows = [row for row in OPERATION if row[1] != left_out]

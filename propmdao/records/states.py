@@ -56,6 +56,24 @@ class RotorState:
         """Velocity of the flight in the rotor's axes, (3,) [m/s]."""
         return jnp.stack(jnp.broadcast_arrays(self.edgewise_speed, 0.0, self.axial_speed))
 
+    def tip_mach(self, radius: Scalar) -> Scalar:
+        """Largest Mach number of a blade's tip on its way through the air.
+
+        At an incidence that is on the side where the blade advances.
+
+        Parameters
+        ----------
+        radius : scalar
+            Tip radius [m].
+
+        Returns
+        -------
+        scalar
+            Mach number.
+        """
+        advancing = self.rotation_speed * radius + self.edgewise_speed
+        return jnp.hypot(advancing, self.axial_speed) / self.air.sound_speed
+
     def turning(self, rotation_speed: Scalar) -> RotorState:
         """The same flight at another rotation speed [rad/s]."""
         return dataclasses.replace(self, rotation_speed=rotation_speed)

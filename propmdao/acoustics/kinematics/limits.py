@@ -25,9 +25,7 @@ def require_subsonic_tip(radius: float, state: RotorState) -> None:
     ValueError
         If the relative tip Mach number is 1 or more: Formulation 1A is singular there.
     """
-    # The fastest a blade gets: at an incidence, on the advancing side.
-    advancing = state.rotation_speed * radius + float(state.edgewise_speed)
-    mach = np.hypot(advancing, float(state.axial_speed)) / state.air.sound_speed
+    mach = float(state.tip_mach(radius))
     if not mach < 1:
         raise ValueError(
             f"relative tip Mach number must be below 1 for Formulation 1A; it is {mach:.3f} "

@@ -4,11 +4,14 @@ from __future__ import annotations
 
 import argparse
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from propmdao.commands.observer_options import add_observers
 from propmdao.commands.options import add_asked, add_propeller, number
 from propmdao.propeller.design_choices import BASELINE, FREE, OBJECTIVES, RESPONSES, Free
+
+if TYPE_CHECKING:
+    from propmdao.records.states import OperatingPoint
 
 #: What may be asked of the model.
 ASKED_OPTIONS = ("n_crit", "trip_upper", "trip_lower", "stall_delay", "trip")
@@ -24,15 +27,16 @@ def add_design_options(command: argparse.ArgumentParser) -> None:
         What they are added to.
     """
     add_propeller(command)
-    add_asked(command, ("thrust", "speed", "density"))
+    add_asked(command, ("thrust", "speed", "incidence_deg", "density"))
     command.add_argument(
         "--also-at",
-        nargs=2,
+        nargs="+",
         type=number,
         action="append",
         default=[],
-        metavar=("THRUST", "SPEED"),
-        help="another operating point of the same blade [N, m/s]; may be repeated",
+        metavar=("THRUST SPEED", "INCIDENCE"),
+        help="another operating point of the same blade [N, m/s, deg], the incidence 0 where none"
+        " is given; may be repeated. An incidence anywhere takes some hundred times as long",
     )
     command.add_argument(
         "--free",
@@ -134,6 +138,43 @@ def add_search_options(command: argparse.ArgumentParser) -> None:
         help="the new propeller as NAME.toml, history.csv, figures, sounds and record.json. A"
         " folder with an unfinished search of the same inputs is gone on with",
     )
+
+
+def points_of(options: argparse.Namespace) -> list[OperatingPoint]:
+    """Operating points of the design.
+
+    Parameters
+    ----------
+    options : argparse.Namespace
+        What was typed.
+
+    Returns
+    -------
+    list of OperatingPoint
+        That of --thrust, and those of --also-at.
+
+    Raises
+    ------
+    ValueError
+        If there is no thrust, a point has too few values or too many, or one is out of range.
+    """
+    from propmdao.records.air import Air
+    from propmdao.records.states import OperatingPoint
+
+    if options.thrust is None:
+        raise ValueError("--thrust is required: a design is for a thrust")
+    for values in options.also_at:
+        if len(values) not in (2, 3):
+            raise ValueError(
+                "--also-at takes THRUST, SPEED and perhaps INCIDENCE, as in --also-at 2 10 70; it"
+                f" has {len(values)} {'value' if len(values) == 1 else 'values'}"
+            )
+    conditions = [(options.thrust, options.speed, options.incidence_deg), *options.also_at]
+    air = Air(density=options.density)
+    names = "thrust", "speed", "incidence_deg"
+    return [
+        OperatingPoint(air=air, **dict(zip(names, values, strict=False))) for values in conditions
+    ]
 
 
 def free_of(options: argparse.Namespace) -> dict[str, tuple[float, float]]:

@@ -72,7 +72,10 @@ def write_results(
     results: list[dict[str, Any]] = []
     for number, point in enumerate(points, start=1):
         suffix = "" if len(points) == 1 else f"_at_{number}"
-        progress(f"analysing both blades at {point.thrust:g} N, {point.speed:g} m/s")
+        where = f"{point.thrust:g} N, {point.speed:g} m/s"
+        if point.incidence_deg:
+            where += f", {point.incidence_deg:g} deg"
+        progress(f"analysing both blades at {where}")
         with warning_lines("optimise"):
             analyses = {
                 blade.name: analyze(blade, point, listening=listening, **asked)
@@ -81,7 +84,7 @@ def write_results(
         compared = ComparedAnalyses.beside(analyses)
         results += compared.results.values()
         if len(points) > 1:
-            print_line(f"At {point.thrust:g} N, {point.speed:g} m/s:")
+            print_line(f"At {where}:")
         compared.print_table()
         files += compared.write_table(folder / f"comparison{suffix}.csv")
         drawn = compared_figures(analyses, compared.observer)

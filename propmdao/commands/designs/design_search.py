@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import openmdao.api as om
 
+from propmdao.aerodynamics.solutions.edgewise import FastEdgewiseWarning
 from propmdao.commands.output.progress import progress
 from propmdao.components.drivers.best_design_file import write_best_design
 from propmdao.components.drivers.differential_evolution_driver import DifferentialEvolutionDriver
@@ -68,6 +69,8 @@ def run_search(
         # cost nothing backward: they depend on the splines alone.
         warnings.filterwarnings("ignore", category=om.DerivativesWarning)
         warnings.filterwarnings("ignore", category=om.OMDeprecationWarning)
+        # The analyses of both blades, before and after, tell of it.
+        warnings.filterwarnings("ignore", category=FastEdgewiseWarning)
         if search["method"] == "evolution":
             return _evolve(prob, folder, search, factory)
         return _descend(prob, folder, search["iterations"], label)

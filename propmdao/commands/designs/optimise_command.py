@@ -15,6 +15,7 @@ from propmdao.commands.designs.design_options import (
     add_search_options,
     free_of,
     limits_of,
+    points_of,
     search_of,
 )
 from propmdao.commands.observer_options import listening_of
@@ -48,6 +49,8 @@ examples:
       --minimise dba --torque-max baseline --thickness-min 0.001 --results quiet
   propmdao optimise my_blade.toml --thrust 6 --also-at 2 12 --minimise power --free twist,chord \\
       --tip-mach-max 0.4 --chord 0.8:1.3 --results efficient
+  propmdao optimise apcmr_8x4.5 --thrust 2.9 --speed 10 --incidence 70 --also-at 2.5 0 \
+      --arc 1.9 -60 -30 --results drone
 
 Exit status: 0, or 2 with one line on stderr, also when no design meets the limits.
 """
@@ -77,14 +80,7 @@ def _optimise(options: argparse.Namespace) -> None:
     search = search_of(options)
     free, limits = free_of(options), limits_of(options)
     observers = listening_of(options).observers
-    from propmdao.records.air import Air
-    from propmdao.records.states import OperatingPoint
-
-    if options.thrust is None:
-        raise ValueError("--thrust is required: a design is for a thrust")
-    air = Air(density=options.density)
-    conditions = [(options.thrust, options.speed), *options.also_at]
-    points = [OperatingPoint(thrust=thrust, speed=v, air=air) for thrust, v in conditions]
+    points = points_of(options)
     folder: Path = options.results
     require_output_folder("--results", folder)
     require_matplotlib("--results")

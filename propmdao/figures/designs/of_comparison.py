@@ -50,6 +50,8 @@ def compared_figures(
     point = first.point
     driven = f"{point.rpm:g} rpm" if point.thrust is None else f"{point.thrust:g} N"
     flight = f"{point.speed:g} m/s" if point.speed else "hover"
+    if point.incidence_deg:
+        flight += f" at an incidence of {point.incidence_deg:g}°"
     noise = "tones and broadband noise" if first.broadband is not None else "tones"
     parts = f"{driven}, {flight}; {noise}"
     title = (
