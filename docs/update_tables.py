@@ -1,9 +1,9 @@
-"""Write the tables of docs/verification.md anew from the program as it is.
+"""Write the tables of docs/verification.md and docs/thesis.md anew from the program as it is.
 
 Run it from the repository: ``python docs/update_tables.py``, or with the names of some tables, or
 with what several begin with: ``gradient``. Each table stands between two comment lines that name
 it; the text around them is written by hand. All of them take more than half an hour, most of it for
-searches and smoothness (`gradient_tables.py`).
+searches and smoothness (`gradient_tables.py`) and the thesis' meshes (`thesis_tables.py`).
 """
 
 from __future__ import annotations
@@ -31,6 +31,7 @@ import aerodynamic_sensitivity  # noqa: E402
 import aerodynamic_validation  # noqa: E402
 import gradient_tables  # noqa: E402
 import hover_noise as hover_noise_study  # noqa: E402
+import thesis_tables  # noqa: E402
 import wake_transport as wake_study  # noqa: E402
 
 SLOW_FLYER = pm.load_propeller("apcsf_11x4.7")
@@ -239,11 +240,12 @@ TABLES: dict[str, Callable[[], Rows]] = {
     "hover noise": hover_noise,
     "design point": design_point,
     **gradient_tables.TABLES,
+    **thesis_tables.TABLES,
 }
 
 
 def main() -> None:
-    """Replace the tables of docs/verification.md."""
+    """Replace the tables on their pages."""
     parser = argparse.ArgumentParser(description=__doc__.split("\n\n")[0])
     parser.add_argument(
         "tables",
@@ -256,8 +258,8 @@ def main() -> None:
         if not begun:
             parser.error(f"no table {start!r}; there are: {', '.join(TABLES)}")
         names += begun
-    page = HERE / "verification.md"
     for name in names:
+        page = HERE / ("thesis.md" if name in thesis_tables.TABLES else "verification.md")
         begin, end = f"<!-- table: {name} -->", "<!-- end of table -->"
         pattern = re.compile(f"({re.escape(begin)}\n).*?({end})", re.DOTALL)
         text = markdown(TABLES[name]())

@@ -12,6 +12,7 @@ from propmdao.figures.style import (
     LEVEL,
     LINE_STYLES,
     LOWEST_LEVEL,
+    MARKERS,
     Floats,
     Measured,
     half_circle,
@@ -86,7 +87,7 @@ def directivity(
     lines = [line for line in lines if np.max(line.level) > LOWEST_LEVEL]
     floor, top = axes.get_ylim()
     angle = np.radians(np.asarray(elevation_deg, float))
-    for line in lines:
+    for number, line in enumerate(lines):
         axes.plot(
             angle, np.maximum(line.level, floor), color=line.color, linestyle=line.style,
             label=literal(line.label), **level_line(line.label),
@@ -96,7 +97,7 @@ def directivity(
             axes.plot(
                 np.radians(elevation),
                 known,
-                "o",
+                MARKERS[number % len(MARKERS)],
                 color=line.color,
                 label=f"{literal(line.label)}, measured",
             )

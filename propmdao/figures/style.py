@@ -39,7 +39,7 @@ SOURCE_COLORS = {
 BLADE_COLORS = ("#777777", "#009E73", "#CC79A7", "#E69F00")
 # A blade keeps its colour where it is one of several runs.
 RUN_COLORS = (*BLADE_COLORS, "#0072B2", "#D55E00", "#000000")
-_OTHER_COLORS = ("#E69F00", "#CC79A7", "#56B4E9", "#8C564B", "#999999", "#F0E442")
+_OTHER_COLORS = ("#E69F00", "#CC79A7", "#56B4E9", "#8C564B", "#999999", "#332288")
 #: Line styles of noise sources, for whoever cannot tell the colours apart.
 SOURCE_STYLES = {"thickness": "--", "loading": "-.", "broadband": ":", "total": "-"}
 #: Line styles of what is compared: the first dashed, the second solid.
@@ -237,6 +237,46 @@ def line_styles(names: Iterable[str]) -> dict[str, str]:
     others = [name for name in names if name not in SOURCE_STYLES]
     styles = itertools.cycle(LINE_STYLES if len(others) > 1 else "-")
     return {name: SOURCE_STYLES.get(name) or next(styles) for name in names}
+
+
+def run_line(number: int) -> dict[str, Any]:
+    """Colour and style of the line of one of several runs.
+
+    Parameters
+    ----------
+    number : int
+        Number of the run, counted from 0.
+
+    Returns
+    -------
+    dict
+        Options of matplotlib's ``plot``.
+    """
+    styles = ("-", "--", "-.", ":")
+    return {
+        "color": RUN_COLORS[number % len(RUN_COLORS)],
+        "linestyle": styles[number % len(styles)],
+    }
+
+
+def run_dots(number: int) -> dict[str, Any]:
+    """Colour and shape of the dots of what was measured of one of several runs.
+
+    Parameters
+    ----------
+    number : int
+        Number of the run, counted from 0.
+
+    Returns
+    -------
+    dict
+        Options of matplotlib's ``plot``.
+    """
+    return {
+        "color": RUN_COLORS[number % len(RUN_COLORS)],
+        "marker": MARKERS[number % len(MARKERS)],
+        "linestyle": "",
+    }
 
 
 def level_line(name: str) -> dict[str, Any]:

@@ -112,12 +112,21 @@ def test_validation_book_says_what_its_tests_hold() -> None:
         "test_b": book.Check("test_b", [("1 < 2", "1 < 2")], "failed", "AssertionError: 3 < 2"),
         "test_c": book.Check("test_c", outcome="skipped", reason="no data"),
     }
-    text = book.page({file: checks})
+    kept = {"panel": "p", "labels": ("x, m", "y"), "log": False}
+    for x, y in ((2.0, 3.0), (1.0, 5.0)):  # the second test has the point in front
+        checks["test_b"].drawn.append(
+            kept | {"x": [x], "computed": {"ours": [y]}, "compared with": {"theirs": [y]}}
+        )
+    text = book.book({file: checks})
     title = "APC-SF 11x4.7 in hover against the microphones of an anechoic chamber, nothing fitted"
     assert f"[{title}](#" in text and "| 3 | 1 | 1 | 1 |" in text and f"## {title}\n" in text
     assert r"| a level[3600] | `x \| y < 2` | `1.235 < 2` | met |" in text
     assert "| b | AssertionError: 3 < 2 |  | **missed** |\n|  | `1 < 2` | `1 < 2` |  |" in text
     assert "| c | no data |  | left out |" in text
+    assert "```{image} figures/validation/hover_noise.png\n" in text
+    (axes,) = book.figure(book.curves(checks)).axes
+    assert [line.get_xydata().tolist() for line in axes.get_lines()] == [[[1, 5], [2, 3]]] * 2
+    assert (axes.get_title(), axes.get_xlabel(), axes.get_ylabel()) == ("p", "x, m", "y")
 
 
 def test_the_json_schema_is_that_of_results() -> None:

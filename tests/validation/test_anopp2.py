@@ -82,7 +82,7 @@ def test_harmonics_at_1400_rpm():
 
 
 @pytest.mark.parametrize("rpm", [600, 1400, 2200])
-def test_histories_over_the_first_blade_passage(reference_data: Path, rpm: int):
+def test_histories_over_the_first_blade_passage(reference_data: Path, rpm: int, drawn):
     folder = reference_data / "f1a"
 
     def table(path: str) -> np.ndarray:
@@ -102,6 +102,12 @@ def test_histories_over_the_first_blade_passage(reference_data: Path, rpm: int):
         ("p_dipole_Pa", result.parts["loading"][0]),
     ):
         expected = history[name][: time.size]
-        error = 2 * (phase @ np.asarray(amplitude)).real - (expected - expected.mean())
+        found = 2 * (phase @ np.asarray(amplitude)).real
+        error = found - (expected - expected.mean())
+        source = "thickness" if "monopole" in name else "loading"
+        drawn(
+            f"{source}, {rpm} rpm", ("time, ms", "pressure, Pa"), 1e3 * (time - time[0]),
+            {"propmdao": found}, {"ANOPP2, less its mean": expected - expected.mean()},
+        )  # fmt: skip
         # measured: monopole 0.34 %, dipole 0.06 %
         assert np.abs(error).max() < 0.01 * np.ptp(expected)

@@ -29,12 +29,17 @@ def test_files_are_written_byte_for_byte(folder: Path, tmp_path: Path):
 
 
 @pytest.mark.filterwarnings("ignore:.*(broadband noise|octaveflag)")
-def test_histories_at_three_observers(folder: Path):
+def test_histories_at_three_observers(folder: Path, drawn):
     (result,) = run_case(folder)
     expected = read_pressure(folder / "pressure")
     # text with six digits
     np.testing.assert_allclose(result.pressure.position, expected.position, atol=1e-4)
     np.testing.assert_allclose(result.pressure.time, expected.time, atol=1e-7)
+    for k, time in enumerate(expected.time):
+        drawn(
+            f"observer {k + 1}", ("time, ms", "pressure, Pa"), 1e3 * (time - time[0]),
+            {"propmdao": result.pressure.total[k]}, {"PSU-WOPWOP": expected.total[k]},
+        )  # fmt: skip
     # measured: loading 0.11 %, thickness 0.28 % of peak to peak
     for source, limit in (("loading", 0.002), ("thickness", 0.004), ("total", 0.004)):
         reference = getattr(expected, source)

@@ -49,7 +49,7 @@ def levels(frequency, values, air, distance, trip):
     return {name: np.asarray(level_db(p)) for name, p in edge._asdict().items()}
 
 
-def test_table_d2(reference_data):
+def test_table_d2(reference_data, drawn):
     printed = table(reference_data / "bpm" / "rp1218_tableD2_untripped.csv")
     values = (0.3048, 0.4572, 71.3, np.radians(1.516), 0.0, 0.0)
     air = Air(density=1.0, sound_speed=340.46, dynamic_viscosity=1.4529e-5)
@@ -60,7 +60,14 @@ def test_table_d2(reference_data):
         ("separation", "separation", 0.01),
         ("laminar_shedding", "laminar", 0.08),
     ):
-        error = np.maximum(got[mechanism], -100) - printed[f"spl_{column}_dB"]
+        reported = printed[f"spl_{column}_dB"]
+        error = np.maximum(got[mechanism], -100) - reported
+        loud = reported > -40
+        drawn(
+            "table D2", ("frequency, Hz", "dB re 20 µPa"), printed["freq_hz"][loud],
+            {mechanism.replace("_", " "): got[mechanism][loud]},
+            {f"{column}, report": reported[loud]}, log=True,
+        )  # fmt: skip
         assert np.abs(error).max() < largest
 
 
@@ -77,8 +84,8 @@ def test_table_d2(reference_data):
         ("98b", "98-b-bluntness", "bluntness", (-1.1, -0.7), 3.2),
     ],
 )
-def test_figures(reference_data, figure, curve, mechanism, mean, spread):
-    error = figure_error(reference_data / "bpm", figure, curve, mechanism)
+def test_figures(reference_data, figure, curve, mechanism, mean, spread, drawn):
+    error = figure_error(reference_data / "bpm", figure, curve, mechanism, drawn=drawn)
     assert mean[0] < error.mean() < mean[1]
     assert np.abs(error).max() < spread
 
@@ -108,7 +115,7 @@ def test_the_figure_of_bluntness_is_that_of_a_higher_speed(reference_data):
     assert np.abs(thicker[:-2]).max() < 0.4 and thicker[-1] < -4.0
 
 
-def figure_error(folder, figure, curve, mechanism, **changed):
+def figure_error(folder, figure, curve, mechanism, drawn=None, **changed):
     """Ours less what was read, in the bands of a figure [dB]."""
     with open(folder / "brooks1989_cases.csv") as file:
         case = next(row for row in csv.DictReader(file) if row["figure"] == figure)
@@ -132,6 +139,12 @@ def figure_error(folder, figure, curve, mechanism, **changed):
         float(case["r_e_m"]),
         "heavy" if case["bl"].startswith("Tripped") else "none",
     )
+    if drawn:
+        drawn(
+            f"figure {figure}", ("frequency, Hz", "dB re 20 µPa"), NOMINAL[nearest],
+            {mechanism.replace("_", " "): got[mechanism]},
+            {f"{curve.split('-', 2)[2]}, read": read["spl_third_octave_dB"]}, log=True,
+        )  # fmt: skip
     return got[mechanism] - read["spl_third_octave_dB"]
 
 

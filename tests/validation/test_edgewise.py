@@ -69,7 +69,7 @@ def measured(reference_data, incidence_deg):
 
 
 @pytest.mark.parametrize(("incidence_deg", "error"), [(90.0, 2.5), (60.0, 8.5)])
-def test_thrust_at_an_incidence(reference_data, blade, incidence_deg, error):
+def test_thrust_at_an_incidence(reference_data, blade, incidence_deg, error, drawn):
     rpm, thrust = measured(reference_data, incidence_deg)
     edgewise = SPEED * np.sin(np.radians(incidence_deg))
     slow = edgewise / (rpm * np.pi / 30 * 0.5 * blade.diameter) < 0.31
@@ -79,6 +79,10 @@ def test_thrust_at_an_incidence(reference_data, blade, incidence_deg, error):
     ]
     assert all(loads.converged for loads in found)
     computed = np.array([float(loads.thrust) for loads in found])
+    drawn(
+        f"incidence {incidence_deg:g} deg", ("rotation speed, rpm", "thrust, N"), rpm[slow],
+        {"propmdao": computed}, {"wind tunnel": thrust[slow]},
+    )  # fmt: skip
     relative = 100.0 * np.abs(computed - thrust[slow]).sum() / thrust[slow].sum()
     assert relative == pytest.approx(error, abs=WITHIN)
 

@@ -87,7 +87,7 @@ def test_peaks(heard, mechanism, peak_db, peak_hz, low, high):
     assert abs(bands_off) < (1.5 if mechanism == "tip" else 0.5)
 
 
-def test_spectrum_of_the_boundary_layers(heard):
+def test_spectrum_of_the_boundary_layers(heard, drawn):
     read = {
         "pressure_side": (
             [2.5e3, 4e3, 6.3e3, 10e3, 16e3, 25e3, 40e3],
@@ -100,4 +100,8 @@ def test_spectrum_of_the_boundary_layers(heard):
     }
     for mechanism, (frequency, level) in read.items():
         at = np.abs(np.log(BANDS[:, None] / frequency)).argmin(axis=0)
+        drawn(
+            mechanism.replace("_", " "), ("frequency, Hz", "dB re 20 µPa, 20 Hz"), frequency,
+            {"propmdao": heard[mechanism][at]}, {"Pettingill et al., predicted": level}, log=True,
+        )  # fmt: skip
         assert np.abs(heard[mechanism][at] - level).max() < 0.8

@@ -101,10 +101,15 @@ def test_thrust(hover):
     assert 0.84 < float(hover.loads.thrust) / 4.037 < 0.88
 
 
-def test_third_octaves_from_500_hz_to_10_khz(hover, measured):
+def test_third_octaves_from_500_hz_to_10_khz(hover, measured, drawn):
     heard = np.asarray(level_db(hover.broadband.total))
     low, high = np.searchsorted(BANDS_HZ, (490, 10100))
     found = error(heard[:, low:high], measured)
+    for elevation, ours, theirs in zip(ELEVATIONS, heard[:, low:high], measured, strict=True):
+        drawn(
+            f"third octaves at {elevation:g} deg", ("frequency, Hz", "dB re 20 µPa"),
+            BANDS_HZ[low:high], {"propmdao": ours}, {"anechoic chamber": theirs}, log=True,
+        )  # fmt: skip
     assert 3.3 < found[0] < 3.9
     assert 4.4 < found[1] < 5.0
 

@@ -79,10 +79,17 @@ MEASURED = {
 
 
 @pytest.mark.parametrize("airfoil", SECTIONS)
-def test_differences_from_xflr5_are_those_measured(reference_data: Path, airfoil: str) -> None:
+def test_differences_from_xflr5_are_those_measured(
+    reference_data: Path, airfoil: str, drawn
+) -> None:
     rows = MEASURED[airfoil].strip().replace("\n", "|").split("|")
     expected = np.array([row.split() for row in rows], dtype=float)
     measured = differences(reference_data, airfoil)
+    for k, label in ((1, "mean difference in cl"), (2, "mean difference in cd")):
+        drawn(
+            f"{airfoil}, {label}", ("Reynolds number", label), measured[:, 0],
+            {"n_crit 5, the tables": measured[:, k]}, {}, log=True,
+        )  # fmt: skip
     np.testing.assert_allclose(measured[:, 0], expected[:, 0], rtol=1e-6)
     # Bands of a tenth, and the rounding of the numbers above.
     np.testing.assert_allclose(measured[:, 1], expected[:, 1], rtol=0.1)

@@ -46,10 +46,15 @@ def test_thrust_and_power_in_the_wind_tunnel(j, ct_error, cp_error):
 
 
 @pytest.mark.parametrize("j", [0.126, 0.264, 0.394, 0.525, 0.654])
-def test_measured_thrust_lies_between_viscous_and_inviscid(j):
+def test_measured_thrust_lies_between_viscous_and_inviscid(j, drawn):
     dynamic = read_wind_tunnel(MEASURED).dynamic
     (measured,) = dynamic.CT[(dynamic.rpm == 4003) & (dynamic.J == j)]
-    assert at_4003_rpm(j)["CT"] < measured < at_4003_rpm(j, viscous=False)["CT"]
+    viscous, inviscid = at_4003_rpm(j)["CT"], at_4003_rpm(j, viscous=False)["CT"]
+    drawn(
+        "photographed blade, 4003 rpm", ("advance ratio J", "CT"), j,
+        {"viscous": viscous, "inviscid": inviscid}, {"wind tunnel": measured},
+    )  # fmt: skip
+    assert viscous < measured < inviscid
 
 
 @pytest.mark.parametrize(("j", "inviscid", "viscous"), [(0.0, 1.16, 1.44), (0.3, 1.14, 1.57)])

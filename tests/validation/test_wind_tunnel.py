@@ -53,9 +53,16 @@ def measured(name):
     return dataclasses.replace(tunnel, static=tunnel.static[::3], dynamic=tunnel.dynamic[::6])
 
 
-def compared(name, twist_deg=0.0):
+def compared(name, twist_deg=0.0, drawn=None):
     tunnel, propeller = measured(name), load_propeller(name)
-    points = (computed(propeller, at, twist_deg) for at in (tunnel.static, tunnel.dynamic))
+    points = [computed(propeller, at, twist_deg) for at in (tunnel.static, tunnel.dynamic)]
+    if drawn:
+        for quantity in ("CT", "CP"):
+            drawn(
+                f"{name}, {quantity}", ("advance ratio J", quantity), tunnel.dynamic.J,
+                {"propmdao, as published": getattr(points[1], quantity)},
+                {"wind tunnel, all rotation speeds": getattr(tunnel.dynamic, quantity)},
+            )  # fmt: skip
     return errors(tunnel, *points)
 
 
@@ -64,8 +71,8 @@ def sizes(*arrays):
 
 
 @pytest.mark.parametrize("name", PUBLISHED)
-def test_published_geometry(name):
-    found = compared(name)  # a point without convergence would make a mean nan
+def test_published_geometry(name, drawn):
+    found = compared(name, drawn=drawn)  # a point without convergence would make a mean nan
     static, low, high, trend = PUBLISHED[name]
     assert sizes(found.static_ct, found.static_cp) == pytest.approx(static, abs=WITHIN)
     assert sizes(found.low_ct, found.low_cp) == pytest.approx(low, abs=WITHIN)

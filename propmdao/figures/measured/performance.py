@@ -9,7 +9,16 @@ import numpy as np
 import numpy.typing as npt
 
 from propmdao.analysis.wind_tunnel import Errors, Points
-from propmdao.figures.style import GRID, LEVEL, LINE_STYLES, RUN_COLORS, literal, page
+from propmdao.figures.style import (
+    GRID,
+    LEVEL,
+    LINE_STYLES,
+    RUN_COLORS,
+    literal,
+    page,
+    run_dots,
+    run_line,
+)
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -44,8 +53,8 @@ def performance(measured: Points, computed: Mapping[str, Points]) -> Figure:
     grid: Any = figure.subplots(3, len(computed), sharex=True, sharey="row", squeeze=False)
     for column, (name, points) in enumerate(computed.items()):
         grid[0, column].set_title(literal(name), fontsize="medium")
-        for color, speed, run in _runs(measured):
-            _draw_run(grid[:, column], measured[run], points[run], color, speed)
+        for number, speed, run in _runs(measured):
+            _draw_run(grid[:, column], measured[run], points[run], number, speed)
         grid[-1, column].set_xlabel("advance ratio J")
     for row, label in zip(grid, ("CT", "CP", "efficiency eta"), strict=True):
         row[0].set_ylabel(label)
@@ -62,15 +71,16 @@ def performance(measured: Points, computed: Mapping[str, Points]) -> Figure:
 
 
 def _draw_run(
-    rows: Sequence[Any], measured: Points, points: Points, color: str, label: str
+    rows: Sequence[Any], measured: Points, points: Points, number: int, label: str
 ) -> None:
+    line, dots = run_line(number), run_dots(number)
     for axes, name in zip(rows, ("CT", "CP", "eta"), strict=True):
         shown = []
         for values in (measured, points):
             y = getattr(values, name)
             shown.append(np.where(values.CT > _LEAST_THRUST, y, np.nan) if name == "eta" else y)
-        axes.plot(measured.J, shown[0], "o", color=color, markersize=4, mfc="none")
-        axes.plot(points.J, shown[1], color=color, linewidth=1.8, label=literal(label))
+        axes.plot(measured.J, shown[0], markersize=4, mfc="none", **dots)
+        axes.plot(points.J, shown[1], linewidth=1.8, label=literal(label), **line)
 
 
 def static_performance(measured: Points, computed: Mapping[str, Points]) -> Figure:
@@ -127,14 +137,10 @@ def over_rpm_and_advance_ratio(
     for row, (label, (still, moving)) in zip(grid, values.items(), strict=True):
         row[0].set_ylabel(label)
         row[0].plot(static.rpm, np.asarray(still), "o-", color="black", markersize=4)
-        for color, name, run in _runs(dynamic):
+        for number, name, run in _runs(dynamic):
+            line = run_dots(number) | run_line(number)
             row[1].plot(
-                dynamic.J[run],
-                np.asarray(moving)[run],
-                "o-",
-                color=color,
-                markersize=4,
-                label=literal(name),
+                dynamic.J[run], np.asarray(moving)[run], markersize=4, label=literal(name), **line
             )
         for axes in row:
             axes.grid(**GRID)
@@ -212,9 +218,9 @@ def tone_directivity(
     figure = page(6.0)
     axes = figure.add_subplot()
     axes.grid(**GRID)
-    for color, (name, level) in zip(RUN_COLORS, computed.items(), strict=False):
-        axes.plot(np.asarray(elevation_deg), np.asarray(level), color=color, label=literal(name))
-        axes.plot(np.asarray(measured_at_deg), np.asarray(measured[name]), "o", color=color)
+    for number, (name, level) in enumerate(computed.items()):
+        axes.plot(elevation_deg, level, label=literal(name), **run_line(number))
+        axes.plot(measured_at_deg, measured[name], **run_dots(number))
     axes.set(
         xlabel="elevation from the rotor plane, deg (negative: wake side)",
         ylabel=f"SPL at blade passage, {LEVEL}",
@@ -224,9 +230,9 @@ def tone_directivity(
     return figure
 
 
-def _runs(points: Points) -> Iterator[tuple[str, str, npt.NDArray[np.intp]]]:
-    """Colour, name and positions, by rising J, of the runs of a rotation speed."""
+def _runs(points: Points) -> Iterator[tuple[int, str, npt.NDArray[np.intp]]]:
+    """Number, name and positions, by rising J, of the runs of a rotation speed."""
     speeds = 500.0 * np.round(points.rpm / 500.0)
-    for color, speed in zip(RUN_COLORS, np.unique(speeds), strict=False):
+    for number, speed in enumerate(np.unique(speeds)[: len(RUN_COLORS)]):
         run = np.flatnonzero(speeds == speed)
-        yield color, f"{speed:.0f} rpm", run[np.argsort(points.J[run])]
+        yield number, f"{speed:.0f} rpm", run[np.argsort(points.J[run])]
