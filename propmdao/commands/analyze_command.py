@@ -76,34 +76,12 @@ Levels are in dB re 20 uPa, rms. SI units throughout. Exit status: 0, or 2 with 
 """
 
 
-#: What may be asked of the flow.
-ASKED_OPTIONS = (
-    "rpm",
-    "thrust",
-    "speed",
-    "incidence_deg",
-    "density",
-    "twist_offset_deg",
-    "viscous",
-    "stall_delay",
-    "n_crit",
-    "trip_upper",
-    "trip_lower",
-    "measured_drag",
-    "elastic",
-    "youngs_modulus",
-    "shear_modulus",
-    "material_density",
-    "unsteady",
-    "revolutions",
-    "average",
-    "timestep_deg",
-    "start",
-    "wake_motion",
-    "gust_speed",
-    "gust_shape",
-    "gust_start",
-    "gust_length",
+#: What may be asked of the flow: of a rotor as it is described, which sweeps change.
+ASKED_OPTIONS = tuple(
+    name
+    for name, quantity in ASKED.items()
+    if quantity.option
+    and name not in ("chord_factor", "diameter", "n_blades", "broadband", "trip")
 )
 
 
