@@ -24,6 +24,7 @@ from propmdao.aerodynamics.solutions.result import RotorLoads
 from propmdao.aerodynamics.wakes.ages import wake_azimuths
 from propmdao.analysis.comparisons import Rows, markdown
 from propmdao.analysis.wind_tunnel import Points, computed, zero_thrust, zero_thrust_twist_deg
+from propmdao.propeller.catalog import catalog_names
 
 HERE = Path(__file__).parent
 sys.path.insert(0, str(HERE.parent / "studies" / "validation"))
@@ -226,12 +227,34 @@ def design_point() -> Rows:
     return rows
 
 
+def blade_elements() -> Rows:
+    """Blade elements over the lattice, propeller by propeller at 5000 rpm."""
+    rows: Rows = [("propeller", "c / R at 0.75", *(f"{name}, J {j:g}" for j in (0.0, 0.3)
+                   for name in ("T", "Q")))]  # fmt: skip
+    for name in catalog_names():
+        if name.endswith(("_uiuc", "_thesis")):
+            continue
+        propeller = pm.load_propeller(name)
+        chord = np.interp(0.75, propeller.r_over_R, propeller.c_over_R)
+        cells: list[str] = []
+        for j in (0.0, 0.3):
+            speed = j * 5000.0 / 60.0 * propeller.diameter
+            elements, lattice = (
+                pm.analyze(propeller, rpm=5000.0, speed=speed, blade_element=chosen).loads
+                for chosen in (True, False)
+            )
+            cells += change(elements, lattice)
+        rows.append((name, f"{chord:.3f}", *cells))
+    return rows
+
+
 TABLES: dict[str, Callable[[], Rows]] = {
     "targets": targets,
     "lattice": lattice_convergence,
     "wake": wake_convergence,
     "wake transport": wake_transport,
     "ideal disk": ideal_disk,
+    "blade elements": blade_elements,
     "wind tunnel": summary,
     "run at 4003 rpm": run_4003,
     "sensitivity apcsf_11x4.7": functools.partial(sensitivity, "apcsf_11x4.7"),

@@ -45,6 +45,7 @@ class Asked(TypedDict, total=False):
     diameter: float | None
     n_blades: int | None
     viscous: bool
+    blade_element: bool
     stall_delay: bool
     measured_drag: bool
     elastic: bool

@@ -25,7 +25,7 @@ from propmdao.aerodynamics.sections.polars.family import SectionPolars, warn_out
 from propmdao.aerodynamics.sections.polars.propeller_polars import polars_for
 from propmdao.aerodynamics.sections.polars.sources import polar_sources
 from propmdao.aerodynamics.sections.polars.table import warn_outside
-from propmdao.aerodynamics.solutions import axial, periodic
+from propmdao.aerodynamics.solutions import axial, blade_element, periodic
 from propmdao.aerodynamics.solutions.case import RotorCase
 from propmdao.aerodynamics.solutions.edgewise import (
     edgewise_advance_ratio,
@@ -93,11 +93,11 @@ def analyze(
         Called after every step of a march in time, with a `MarchProgress`.
     **asked
         Single values: rpm, thrust [N], speed [m/s], incidence_deg, density [kg/m^3] and the rest of
-        the air; twist_offset_deg, chord_factor, diameter, n_blades; viscous, stall_delay, n_crit,
-        trip_upper, trip_lower, measured_drag, elastic, youngs_modulus, shear_modulus [Pa],
-        material_density [kg/m^3], unsteady, revolutions, average, timestep_deg, start, wake_motion,
-        gust_speed [m/s], gust_shape, gust_start, gust_length, broadband, trip, fidelity; observers,
-        (n, 3) positions [m] as `propmdao.arc` makes them, surroundings.
+        the air; twist_offset_deg, chord_factor, diameter, n_blades; viscous, blade_element,
+        stall_delay, n_crit, trip_upper, trip_lower, measured_drag, elastic, youngs_modulus,
+        shear_modulus [Pa], material_density [kg/m^3], unsteady, revolutions, average, timestep_deg,
+        start, wake_motion, gust_speed [m/s], gust_shape, gust_start, gust_length, broadband, trip,
+        fidelity; observers, (n, 3) positions [m] as `propmdao.arc` makes them, surroundings.
 
     Returns
     -------
@@ -126,6 +126,8 @@ def analyze(
         require_marchable(point)
     if request.model.loads.elastic is not None:
         point.require_axial("an elastic blade")
+    if request.model.loads.blade_element:
+        point.require_axial("a rotor by blade elements")
     paths = sound_paths(listening.observers, listening.surroundings, point.incidence_deg)
 
     elastic = model.loads.elastic
@@ -160,6 +162,8 @@ def analyze(
         )
         if model.loads.unsteady is not None:
             return Solved(blade, panels, case, *marched(case, point, model, progress))
+        if model.loads.blade_element:
+            return Solved(blade, panels, case, *_solve(blade_element, case, point))
         if point.incidence_deg == 0.0:
             return Solved(blade, panels, case, *_solve(axial, case, point))
         return Solved(blade, panels, case, *_tilted(case, point, model))

@@ -265,6 +265,8 @@ def _check(options: argparse.Namespace) -> None:
     ):
         if value is not None and _is_list(options.rpm):
             raise ValueError(f"{option} is of one operating point: give one --rpm")
+    if options.blade_element and options.vtk is not None:
+        raise ValueError("--vtk draws the lattice and its wake, which --blade-element has not")
     for option, value in (("--wav", options.wav), ("--spectra", options.spectra)):
         if value is not None and not placed:
             raise ValueError(f"{option} needs observers, as with --arc 1.905 -45")
@@ -326,8 +328,7 @@ def _write(
         from propmdao.figures.rotor.of_rotor import rotor_figures
 
         figures = rotor_figures(analysis, polars)
-        of_flow = options.incidence_deg or options.unsteady
-        if len(analysis.listening.observers) or of_flow:
+        if len(analysis.listening.observers) or options.incidence_deg or options.unsteady:
             observer = None if options.figure_at is None else options.figure_at - 1
             figures |= analysis_figures(analysis, observer, options.figure_dba)
         written["figures"] = save_figures(options.figures, figures)
@@ -354,9 +355,8 @@ def _own_polars(options: Sequence[Sequence[str]]) -> dict[str, PolarTable]:
 
 def _rpm_values(values: list[float | list[float]] | None) -> list[float | None]:
     """All rpm in the order values; one None where thrust is given instead."""
-    if values is None:
-        return [None]
-    return [rpm for item in values for rpm in (item if isinstance(item, list) else [item])]
+    listed = [item if isinstance(item, list) else [item] for item in values or ()]
+    return [rpm for item in listed for rpm in item] or [None]
 
 
 def _is_list(values: list[float | list[float]] | None) -> bool:

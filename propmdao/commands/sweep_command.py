@@ -57,6 +57,7 @@ when every point has failed.
 #: What is asked of all points alike.
 ASKED_OF_ALL = (
     "viscous",
+    "blade_element",
     "stall_delay",
     "n_crit",
     "trip_upper",

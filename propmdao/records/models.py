@@ -158,11 +158,14 @@ class LoadModel:
         Blade that twists and bends under its loads; None (default) is a rigid one.
     unsteady : Marching or None
         March in time; None (default) solves for the flow that repeats.
+    blade_element : bool
+        Whether annuli of momentum take the place of the lattice: much faster, less accurate.
 
     Raises
     ------
     ValueError
-        If an elastic blade is to be loaded by inviscid flow, or marched in time.
+        If an elastic blade is to be loaded by inviscid flow, or marched in time, or blade elements
+        are to be marched.
     """
 
     viscous: bool = True
@@ -172,9 +175,12 @@ class LoadModel:
     measured_drag: bool = True
     elastic: ElasticModel | None = None
     unsteady: Marching | None = None
+    blade_element: bool = False
 
     def __post_init__(self) -> None:
-        """Refuse an elastic blade without the moments of its sections, or in a march."""
+        """Refuse an elastic blade without the moments of its sections, and marches without wake."""
+        if self.blade_element and self.unsteady is not None:
+            raise ValueError("blade elements have no wake to march: leave out unsteady")
         if self.elastic is not None and self.unsteady is not None:
             raise ValueError("an elastic blade is known in steady flow alone: leave out unsteady")
         if self.elastic is not None and not self.viscous:

@@ -78,7 +78,7 @@ def decreasing_root(
     """
 
     def unfinished(state: _Search) -> Array:
-        return (state.n_trials < _MAX_EVALUATIONS) & ~state.done
+        return (state.n_trials < _MAX_EVALUATIONS) & ~state.done.all()
 
     def step(state: _Search) -> _Search:
         x = state.trial
@@ -100,24 +100,26 @@ def decreasing_root(
         # Where the next trial will do, it is evaluated once more, for the results there, unless
         # they lie on a straight line.
         done = close if straight else state.close
+        following = jnp.where(state.close | state.done, x, following)
         return _Search(
             n_trials=state.n_trials + 1,
             low=lo,
             high=hi,
-            trial=jnp.where(state.close, x, following),
+            trial=following,
             last_trial=x,
             last_residual=f,
             results=results,
             close=close,
-            done=done,
+            done=done | state.done,
         )
 
-    none, no = jnp.asarray(jnp.inf), jnp.asarray(False)
+    trial = jnp.asarray(guess.root, float)
+    none, no = jnp.full_like(trial, jnp.inf), jnp.full_like(trial, False, bool)
     start = _Search(
         n_trials=0,
         low=jnp.asarray(low, float),
         high=jnp.asarray(high, float),
-        trial=jnp.asarray(guess.root, float),
+        trial=trial,
         last_trial=none,
         last_residual=none,
         results=guess.results,

@@ -56,6 +56,7 @@ ASKED_OPTIONS = (
     "incidence_deg",
     "density",
     "viscous",
+    "blade_element",
     "stall_delay",
     "n_crit",
     "trip_upper",

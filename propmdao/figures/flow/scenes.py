@@ -209,10 +209,14 @@ def write_scenes(folder: Path, analysis: Analysis) -> list[str]:
     Raises
     ------
     ValueError
-        If the rotor stands still.
+        If the rotor stands still, or its loads are those of blade elements.
     OutputError
         If the folder cannot be written.
     """
+    if analysis.model.loads.blade_element:
+        raise ValueError(
+            "files for ParaView are of lattice and wake, which blade elements have not"
+        )
     moments = list(scenes(analysis))
     turned_deg = [np.degrees(scene.time * analysis.rpm * RAD_PER_S) for scene in moments]
     with replacing_in(folder) as files:
