@@ -12,7 +12,7 @@ import jax.numpy as jnp
 import numpy as np
 from jax import Array
 
-from propmdao.aerodynamics.vortices.biot_savart import segment_normalwash, summed_velocities
+from propmdao.aerodynamics.vortices.biot_savart import summed_velocities
 from propmdao.aerodynamics.wakes.lags import shed
 from propmdao.records.pytrees import Scalar, record, static
 
@@ -228,20 +228,28 @@ def normalwash_of_strips(points: Array, normals: Array, sheets: Sheets, now: Arr
     (n_blades, ns, n_points) array
         Normalwash per unit circulation of the strips of each blade [1/m].
     """
-    n_blades = sheets.nodes.shape[1]
-    trailing_core, shed_core = sheets.cores
 
-    def summed(nodes: tuple[Array, Array], core: Array, strength: Array) -> Array:
-        start, end = (ends.reshape(-1, 3) for ends in nodes)
-        unit = segment_normalwash(points, normals, start, end, core)
-        return jnp.einsum("j,bjp->bp", strength, unit.reshape(n_blades, -1, points.shape[0]))
+    def induced(start: Array, end: Array, core: Array, circulation: Array) -> Array:
+        """Normalwash of a chain behind each blade, for each of some circulations of it."""
 
-    def of_strip(strip: tuple[Array, Array, Array, Array]) -> Array:
-        root, tip, ring, change = strip
-        outer, inner = (
-            summed((edge[:, :-1], edge[:, 1:]), trailing_core, ring) for edge in (tip, root)
-        )
-        return outer - inner + summed((root[:, :-1], tip[:, :-1]), shed_core, change)
+        # The chain's kernel is computed once for all of its circulations.
+        def by_chain(start: Array, end: Array) -> Array:
+            return jax.vmap(lambda g: summed_velocities(points, start, end, core, g))(circulation)
 
-    strips = sheets.nodes[:-1], sheets.nodes[1:], now, shed(now, jnp.ones(now.shape[0]))
-    return jax.lax.map(of_strip, strips).swapaxes(0, 1)
+        return jnp.einsum("bkcp,pc->bkp", jax.vmap(by_chain)(start, end), normals)
+
+    def of_filament(filament: tuple[Array, Array]) -> Array:
+        nodes, circulation = filament
+        return induced(nodes[:, :-1], nodes[:, 1:], sheets.trailing_core, circulation)
+
+    def across_strip(strip: tuple[Array, Array, Array]) -> Array:
+        root, tip, circulation = strip
+        return induced(root[:, :-1], tip[:, :-1], sheets.shed_core, circulation[None])[:, 0]
+
+    # A filament is the outer edge of one strip and the inner one of the next.
+    padded = jnp.pad(now, ((1, 1), (0, 0)))
+    edges = jnp.stack([padded[:-1], padded[1:]], axis=1)
+    along = jax.lax.map(of_filament, (sheets.nodes, edges))
+    change = shed(now, jnp.ones(now.shape[0]))
+    across = jax.lax.map(across_strip, (sheets.nodes[:-1], sheets.nodes[1:], change))
+    return (along[1:, :, 0] - along[:-1, :, 1] + across).swapaxes(0, 1)
