@@ -67,6 +67,7 @@ ASKED_OF_ALL = (
     "trip_lower",
     "broadband",
     "trip",
+    "layers",
 )
 
 

@@ -63,6 +63,7 @@ ASKED_OPTIONS = (
     "measured_drag",
     "broadband",
     "trip",
+    "layers",
 )
 
 
