@@ -105,10 +105,11 @@ class AerodynamicsComp(NodesComp, RootComponent):
         Point forces of blade 1 ON THE FLUID, ``m``, ``N``; `n_loads` of the module counts them.
     section_speed : (n_spanwise,) array
         Speed of the air relative to the sections in the middle of the strips, ``m/s``.
-    section_lift_coefficient : (n_spanwise,) array
-        Lift coefficients of the sections; without polars those of the lattice.
+    section_angle_of_attack, section_lift_coefficient : (n_spanwise,) arrays
+        Angles of attack of the sections from their chord lines, ``rad``, and their lift
+        coefficients; without polars those of the lattice.
 
-    With `tilted` the last five, but `load_position`, have an axis of azimuths of blade 1 before
+    With `tilted` the last six, but `load_position`, have an axis of azimuths of blade 1 before
     those above: equally spaced from 0, where it points along +x, as many as `fidelity` has, rounded
     up to a multiple of the blades.
 
@@ -197,6 +198,7 @@ class AerodynamicsComp(NodesComp, RootComponent):
             "load_position": ("load",),
             "load_force": (*azimuth, "load"),
             "section_speed": (*azimuth, "strip"),
+            "section_angle_of_attack": (*azimuth, "strip"),
             "section_lift_coefficient": (*azimuth, "strip"),
         }
         self.add_point_output("circulation", shape=(*around, nc, ns), units="m**2/s")
@@ -206,6 +208,9 @@ class AerodynamicsComp(NodesComp, RootComponent):
         )
         self.add_point_output(
             "section_speed", shape=(*around, ns), units="m/s", desc="Through the air."
+        )
+        self.add_point_output(
+            "section_angle_of_attack", shape=(*around, ns), units="rad", desc="From the chord line."
         )
         self.add_point_output(
             "section_lift_coefficient", shape=(*around, ns), desc="In the middle of the strips."
@@ -307,5 +312,6 @@ def loads_outputs(loads: RotorLoads | TiltedLoads, state: RotorState, inputs: Ar
         "load_position": loads.point_loads.position,
         "load_force": loads.point_loads.force,
         "section_speed": loads.sections.relative_speed,
+        "section_angle_of_attack": loads.sections.angle_of_attack,
         "section_lift_coefficient": loads.sections.lift_coefficient,
     }

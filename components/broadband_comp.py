@@ -13,7 +13,8 @@ from propmdao.acoustics.levels.decibels import energy_sum_db, level_db
 from propmdao.acoustics.levels.weighting import level_dba
 from propmdao.aerodynamics.lattice.rings import vortex_rings
 from propmdao.aerodynamics.lattice.strips import blade_strips
-from propmdao.analysis.self_noise import BANDS_HZ, self_noise, strip_flow
+from propmdao.aerodynamics.sections.edge_layers.tables import EdgeLayerTable, blade_layers
+from propmdao.analysis.self_noise import BANDS_HZ, self_noise, strip_flow, with_layers
 from propmdao.components.bases.array_function import Arrays
 from propmdao.components.bases.nodes_comp import STATIC, NodesComp
 from propmdao.components.inputs.model_options import declare_model
@@ -21,6 +22,7 @@ from propmdao.components.inputs.noise_inputs import (
     add_noise_inputs,
     check_rotor,
     declare_azimuths,
+    declare_layers,
     declare_observers,
     noise_state,
 )
@@ -52,6 +54,11 @@ class BroadbandComp(NodesComp):
     section_lift_coefficient : (n_spanwise,) array
         Lift coefficients of the sections, which tell the angle from zero lift. With `n_azimuths`
         both are (n_azimuths, n_spanwise), at equally spaced azimuths of the blade from 0.
+    section_angle_of_attack : (n_spanwise,) array
+        Angle of attack from the chord line, likewise, ``rad``; an input with the option `layers`.
+    section_layers : (n_spanwise, 2, 4, n_re, n_alpha) array
+        Boundary layers of the sections at the trailing edge, of `GeometryComp`; an input with the
+        option `layers`.
     thickness_over_chord : (n_stations,) array
         Maximum thickness over chord at the propeller's stations. It and the propeller's section
         shapes give the trailing edge.
@@ -96,6 +103,9 @@ class BroadbandComp(NodesComp):
         Numbers of panels.
     trip : {"none", "light", "heavy"}
         Tripping of the boundary layers; "none" is the default.
+    layers : SectionLayers or None
+        Boundary layers of the propeller's sections, as `layers_for` finds them; None (default) for
+        the fits of NASA RP-1218 to a NACA 0012.
 
     Raises
     ------
@@ -112,6 +122,7 @@ class BroadbandComp(NodesComp):
         self.options.declare("propeller", types=Propeller, desc="the described propeller")
         declare_observers(self.options)
         declare_azimuths(self.options)
+        declare_layers(self.options)
         declare_model(self.options, ["fidelity", "trip"])
 
     def setup(self) -> None:
@@ -123,6 +134,11 @@ class BroadbandComp(NodesComp):
         self.add_input("lattice_nodes", shape=(nc + 1, ns + 1, 3), units="m", tags=STATIC)
         self.add_point_input("section_speed", shape=sections, units="m/s")
         self.add_point_input("section_lift_coefficient", shape=sections)
+        layers = self.options["layers"]
+        if layers is not None:
+            self.add_point_input("section_angle_of_attack", shape=sections, units="rad")
+            initial = blade_layers(layers, blade, strip_interpolation(propeller.r_over_R, ns))
+            self.add_input("section_layers", val=np.asarray(initial.values), tags=STATIC)
         self.add_input(
             "thickness_over_chord", val=np.asarray(blade.thickness_over_chord), tags=STATIC
         )
@@ -141,7 +157,7 @@ class BroadbandComp(NodesComp):
             int(propeller.n_blades),
             SelfNoiseModel(trip=self.options["trip"], tip=propeller.tip or "rounded"),
         )
-        self.constants = blade, strip_interpolation(stations, ns)
+        self.constants = blade, strip_interpolation(stations, ns), layers
         axes: tuple[Axis, ...] = ("observer", [f"{frequency:g} Hz" for frequency in BANDS_HZ])
         self.axes = dict.fromkeys(self.output_shapes(), axes)
 
@@ -151,7 +167,7 @@ class BroadbandComp(NodesComp):
 
 
 def _broadband(inputs: Arrays, constants: Any, static: tuple[int, SelfNoiseModel]) -> Arrays:
-    (n_blades, model), (blade, section_radii) = static, constants
+    (n_blades, model), (blade, section_radii, layers) = static, constants
     blade = dataclasses.replace(blade, thickness_over_chord=inputs["thickness_over_chord"])
     nodes = inputs["lattice_nodes"]
     flow = strip_flow(
@@ -162,7 +178,12 @@ def _broadband(inputs: Arrays, constants: Any, static: tuple[int, SelfNoiseModel
         blade,
         section_radii,
     )
-    noise = self_noise(flow, n_blades, noise_state(inputs), inputs["observer_position"], model)
+    state = noise_state(inputs)
+    if layers is not None:
+        table = EdgeLayerTable(layers.alpha, layers.log_re, inputs["section_layers"])
+        angle = inputs["section_angle_of_attack"]
+        flow = with_layers(flow, table, angle, state.air, model.trip)
+    noise = self_noise(flow, n_blades, state, inputs["observer_position"], model)
     broadband_db = level_db(noise.total.sum(axis=1))
     broadband_dba = level_dba(BANDS_HZ, noise.total)
     return {

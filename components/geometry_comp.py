@@ -9,11 +9,13 @@ import numpy as np
 import openmdao.api as om
 from openmdao.utils.options_dictionary import OptionsDictionary
 
+from propmdao.aerodynamics.sections.edge_layers.tables import blade_layers
 from propmdao.aerodynamics.sections.polars.family import blade_tables
 from propmdao.components.bases.array_function import Arrays, evaluate
 from propmdao.components.bases.jax_component import JaxComponent
 from propmdao.components.bases.nodes_comp import STATIC
 from propmdao.components.inputs.model_options import declare_model
+from propmdao.components.inputs.noise_inputs import declare_layers
 from propmdao.components.inputs.rotor_inputs import declare_polars, require_diameter
 from propmdao.geometry.blade import Blade, design_lift_coefficient
 from propmdao.geometry.meshes import blade_meshes, mesh_radii
@@ -94,6 +96,9 @@ class GeometryComp(JaxComponent):
         the values of a `PolarTable`; an output if there is the option `polars`.
     section_thickness_over_chord : (n_spanwise,) array
         Maximum thickness over chord there, from which shocks begin; an output with the polars.
+    section_layers : (n_spanwise, 2, 4, n_re, n_alpha) array
+        Boundary layers of these sections at the trailing edge, the values of an `EdgeLayerTable`;
+        an output if there is the option `layers`.
 
     Options
     -------
@@ -106,6 +111,9 @@ class GeometryComp(JaxComponent):
     polars : SectionPolars or None
         Polars of the propeller's sections, as `polars_for` finds them; None (default) for inviscid
         flow.
+    layers : SectionLayers or None
+        Boundary layers of the propeller's sections, as `layers_for` finds them; None (default)
+        where nothing needs them.
 
     Raises
     ------
@@ -119,6 +127,7 @@ class GeometryComp(JaxComponent):
         declare_model(self.options, ["fidelity"])
         declare_camber(self.options)
         declare_polars(self.options)
+        declare_layers(self.options)
 
     def setup(self) -> None:
         propeller, fidelity = self.options["propeller"], self.options["fidelity"]
@@ -136,6 +145,7 @@ class GeometryComp(JaxComponent):
             Blade.from_propeller(propeller),
             mesh_radii(stations, fidelity.n_spanwise, fidelity.n_surface_span),
             polars,
+            self.options["layers"],
         )
         # A solver around the propeller, Newton's say, starts from these without running this first.
         outputs = evaluate(self.function, self.static, self.constants, initial)
@@ -144,6 +154,7 @@ class GeometryComp(JaxComponent):
             ("surface_nodes", "m", "Points of the section contours of blade 1."),
             ("section_polars", None, "Polars of the sections in the middle of the strips."),
             ("section_thickness_over_chord", None, "Maximum thickness over chord there."),
+            ("section_layers", None, "Boundary layers there, at the trailing edge."),
         ):
             if name in outputs:
                 self.add_output(name, val=np.asarray(outputs[name]), units=units_of, desc=desc)
@@ -175,7 +186,7 @@ class GeometryComp(JaxComponent):
 
 
 def _geometry(inputs: Arrays, constants: Any, static: Fidelity) -> Arrays:
-    blade, radii, polars = constants
+    blade, radii, polars, layers = constants
     changed = {**inputs, "radius": 0.5 * inputs["diameter"][0]}
     del changed["diameter"]
     if "design_lift_coefficient" in changed:
@@ -188,4 +199,6 @@ def _geometry(inputs: Arrays, constants: Any, static: Fidelity) -> Arrays:
     if polars is not None:
         outputs["section_polars"] = blade_tables(polars, blade, radii.strips).values
         outputs["section_thickness_over_chord"] = radii.strips.linear @ blade.thickness_over_chord
+    if layers is not None:
+        outputs["section_layers"] = blade_layers(layers, blade, radii.strips).values
     return outputs

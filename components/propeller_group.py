@@ -7,9 +7,11 @@ from typing import Any
 
 import openmdao.api as om
 
+from propmdao.aerodynamics.sections.edge_layers.tables import SectionLayers
 from propmdao.aerodynamics.sections.polars.family import SectionPolars
 from propmdao.aerodynamics.sections.polars.propeller_polars import polars_for
 from propmdao.aerodynamics.solutions.period.flow import azimuths_for
+from propmdao.analysis.self_noise import section_layers
 from propmdao.components.acoustics_comp import AcousticsComp
 from propmdao.components.aerodynamics_comp import AerodynamicsComp, n_loads
 from propmdao.components.bases.nodes_comp import declare_num_nodes
@@ -147,6 +149,9 @@ design_lift_coefficient : (n_stations,) arrays
     trip : {"none", "light", "heavy"}
         Tripping of the boundary layers in broadband noise alone; "none" (default): as in the loads,
         light where both sides are tripped.
+    layers : {"sections", "bpm"}
+        Boundary layers in broadband noise: of the blade's own sections (default), or the fits of
+        NASA RP-1218 to a NACA 0012.
     camber : {"camber_over_chord", "design_lift_coefficient"}
         Distribution that gives the camber; "camber_over_chord" is the default.
 
@@ -201,16 +206,19 @@ design_lift_coefficient : (n_stations,) arrays
                     " go along"
                 )
             polars = polars or polars_for(propeller, transition=model.loads.transition)
-        self._add_geometry(propeller, polars)
+        layers = section_layers(propeller, model)
+        self._add_geometry(propeller, polars, layers)
         self._add_loads(propeller, polars)
         if is_heard:
-            self._add_noise(propeller, model)
+            self._add_noise(propeller, model, layers)
 
     def _follows_thrust(self, method: str) -> bool:
         """Whether the rotation speed follows from the thrust by a method."""
         return bool(self.options["trim"] == "thrust" and self.options["trim_method"] == method)
 
-    def _add_geometry(self, propeller: Propeller, polars: SectionPolars | None) -> None:
+    def _add_geometry(
+        self, propeller: Propeller, polars: SectionPolars | None, layers: SectionLayers | None
+    ) -> None:
         """Splines of the design distributions, and the meshes that they shape."""
         options = self.options
         initial = blade_distributions(propeller, options["camber"])
@@ -222,6 +230,7 @@ design_lift_coefficient : (n_stations,) arrays
                 fidelity=options["fidelity"],
                 camber=options["camber"],
                 polars=polars,
+                layers=layers,
             ),
             promotes_inputs=["*"],
             promotes_outputs=["*"],
@@ -254,7 +263,7 @@ design_lift_coefficient : (n_stations,) arrays
             aerodynamics = AerodynamicsComp(**solved)
         self.add_subsystem("aerodynamics", aerodynamics, promotes=["*"])
 
-    def _add_noise(self, propeller: Propeller, model: Model) -> None:
+    def _add_noise(self, propeller: Propeller, model: Model, layers: SectionLayers | None) -> None:
         """Tones, and broadband noise where it is asked for."""
         fidelity, n_blades = model.fidelity, int(propeller.n_blades)
         tilted = self.options["tilted"]
@@ -268,7 +277,9 @@ design_lift_coefficient : (n_stations,) arrays
             return
         self.add_subsystem(
             "broadband",
-            BroadbandComp(propeller=propeller, trip=model.noise.broadband.trip, **shared),
+            BroadbandComp(
+                propeller=propeller, trip=model.noise.broadband.trip, layers=layers, **shared
+            ),
             promotes_inputs=["*"],
             promotes_outputs=["*"],
         )

@@ -9,7 +9,7 @@ from openmdao.utils.options_dictionary import OptionsDictionary
 
 from propmdao.analysis.request import Request
 from propmdao.records.fidelity import Fidelity
-from propmdao.records.models import Model, Trip
+from propmdao.records.models import Layers, Model, Trip
 from propmdao.records.quantities import ASKED
 from propmdao.records.wake_law import WakeLaw
 
@@ -17,7 +17,7 @@ _RECORDS = {
     "fidelity": (Fidelity(), "numbers of panels, wake nodes and harmonics"),
     "wake": (WakeLaw(), "how the prescribed wake moves"),
 }
-_WORDS = {"trip": get_args(Trip)}
+_WORDS = {"trip": get_args(Trip), "layers": get_args(Layers)}
 #: Options of the transition, numbers or None.
 TRANSITION_OPTIONS = ("n_crit", "trip_upper", "trip_lower")
 #: Options of `declare_model`.
@@ -28,6 +28,7 @@ MODEL_OPTIONS = (
     *TRANSITION_OPTIONS,
     "broadband",
     "trip",
+    "layers",
 )
 
 

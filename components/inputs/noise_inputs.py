@@ -9,6 +9,7 @@ import openmdao.api as om
 from openmdao.utils.options_dictionary import OptionsDictionary
 
 from propmdao.acoustics.kinematics.limits import require_outside_rotor, require_subsonic_tip
+from propmdao.aerodynamics.sections.edge_layers.tables import SectionLayers
 from propmdao.components.bases.array_function import Arrays
 from propmdao.components.bases.nodes_comp import STATIC, NodesComp
 from propmdao.components.inputs.point_inputs import (
@@ -62,6 +63,23 @@ def declare_azimuths(options: OptionsDictionary) -> None:
         lower=2,
         allow_none=True,
         desc="azimuths of sources that change around the turn; None: steady ones, axial flight",
+    )
+
+
+def declare_layers(options: OptionsDictionary) -> None:
+    """Declare the boundary layers of the sections, None without.
+
+    Parameters
+    ----------
+    options : OptionsDictionary
+        Options of a component.
+    """
+    options.declare(
+        "layers",
+        None,
+        types=SectionLayers,
+        allow_none=True,
+        desc="boundary layers of the sections for broadband noise, as layers_for finds them",
     )
 
 

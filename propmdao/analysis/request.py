@@ -14,6 +14,7 @@ from propmdao.records.fidelity import Fidelity, GustShape, Marching, Start, Wake
 from propmdao.records.listening import Listening, Surroundings
 from propmdao.records.models import (
     ElasticModel,
+    Layers,
     LoadModel,
     Model,
     NoiseModel,
@@ -64,6 +65,7 @@ class Asked(TypedDict, total=False):
     wake_motion: WakeMotion
     broadband: bool
     trip: Trip
+    layers: Layers
     wake: WakeLaw
     n_crit: float | None
     trip_upper: float | None
@@ -176,9 +178,11 @@ def _model(places: Mapping[str, dict[str, Any]]) -> Model:
     """Model of single values."""
     broadband = places.get("model.noise", {}).get("broadband", False)
     self_noise = places.get("model.noise.broadband", {})
-    trip = self_noise.get("trip", "none")
-    if trip != "none" and not broadband:
-        raise ValueError(f"trip {trip!r} is about broadband noise: ask for broadband noise, too")
+    for name, value in self_noise.items():
+        if value != ASKED[name].default and not broadband:
+            raise ValueError(
+                f"{name} {value!r} is about broadband noise: ask for broadband noise, too"
+            )
     transition = places.get("model.loads.transition", {})
     loads = dict(places.get("model.loads", {}))
     if not loads.get("viscous", True):

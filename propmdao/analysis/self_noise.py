@@ -2,17 +2,32 @@
 
 from __future__ import annotations
 
+import dataclasses
+from functools import partial
+
 import jax.numpy as jnp
 from jax import Array
 from jax.typing import ArrayLike
 
 from propmdao.acoustics.broadband.rotor import StripFlow, rotor_self_noise
 from propmdao.acoustics.broadband.section import Section
+from propmdao.acoustics.broadband.section_layers import layer_of_sections
 from propmdao.acoustics.broadband.self_noise import SelfNoise, third_octave_centers
 from propmdao.aerodynamics.lattice.strips import Strips
+from propmdao.aerodynamics.sections.edge_layers.propeller_layers import layers_for
+from propmdao.aerodynamics.sections.edge_layers.tables import (
+    EdgeLayerTable,
+    SectionLayers,
+    blade_layers,
+    edge_sides,
+)
+from propmdao.aerodynamics.sections.polars.shipped import SHIPPED_TRIPPED
+from propmdao.aerodynamics.solutions.result import RotorLoads, TiltedLoads
 from propmdao.geometry.blade import Blade, SpanInterpolation
 from propmdao.geometry.trailing_edge import trailing_edge
-from propmdao.records.models import SelfNoiseModel
+from propmdao.propeller.description import Propeller
+from propmdao.records.air import Air
+from propmdao.records.models import Model, SelfNoiseModel, Trip
 from propmdao.records.states import RotorState
 from propmdao.runtime.compilation import compiled
 
@@ -64,6 +79,109 @@ def strip_flow(
     )
     edge = strips.quarter_chord + 0.75 * strips.chord[:, None] * strips.backward
     return StripFlow(edge, strips.backward, jnp.cross(strips.upward, strips.backward), section)
+
+
+def section_layers(propeller: Propeller, model: Model) -> SectionLayers | None:
+    """Find the boundary layers that a model's broadband noise takes.
+
+    Parameters
+    ----------
+    propeller : Propeller
+        The propeller.
+    model : Model
+        Model with broadband noise, completed.
+
+    Returns
+    -------
+    SectionLayers or None
+        Boundary layers of the sections at the transition of the loads, or tripped; None for the
+        fits of NASA RP-1218.
+
+    Raises
+    ------
+    PolarError
+        If layers at this transition take NeuralFoil and it is not installed.
+    """
+    noise = model.noise.broadband
+    if noise is None or noise.layers == "bpm":
+        return None
+    tripped = noise.trip != "none"
+    return layers_for(propeller, SHIPPED_TRIPPED if tripped else model.loads.transition)
+
+
+@partial(compiled, static_argnames=("trip",))
+def with_layers(
+    flow: StripFlow,
+    layers: EdgeLayerTable,
+    angle_of_attack: Array,
+    air: Air,
+    trip: Trip = "none",
+) -> StripFlow:
+    """Give strips the boundary layers of their own sections.
+
+    Parameters
+    ----------
+    flow : StripFlow
+        Strips of blade 1, of `strip_flow`.
+    layers : EdgeLayerTable
+        Boundary layers of their sections, `blade_layers` at the middle of the strips.
+    angle_of_attack : (ns,) or (n_azimuths, ns) array
+        Angle of attack of the sections from their chord line [rad].
+    air : Air
+        The undisturbed air.
+    trip : {"none", "light", "heavy"}
+        Trip of the layers (static).
+
+    Returns
+    -------
+    StripFlow
+        The same strips with their layer.
+    """
+    section = flow.section
+    reynolds = section.speed * section.chord / air.kinematic_viscosity
+    sides = edge_sides(layers, angle_of_attack, reynolds)
+    layer = layer_of_sections(section.chord, section.angle_of_attack, *sides, trip)
+    return dataclasses.replace(flow, layer=layer)
+
+
+def flow_of(
+    loads: RotorLoads | TiltedLoads,
+    blade: Blade,
+    section_radii: SpanInterpolation,
+    layers: SectionLayers | None,
+    air: Air,
+    trip: Trip = "none",
+) -> StripFlow:
+    """Strips of solved loads as broadband noise sees them.
+
+    Parameters
+    ----------
+    loads : RotorLoads or TiltedLoads
+        Loads of the blade.
+    blade : Blade
+        The blade that was solved.
+    section_radii : SpanInterpolation
+        From the blade's stations to the middle of the strips.
+    layers : SectionLayers or None
+        Boundary layers of `section_layers`.
+    air : Air
+        The undisturbed air.
+    trip : {"none", "light", "heavy"}
+        Trip of the layers.
+
+    Returns
+    -------
+    StripFlow
+        Strips of blade 1 at azimuth 0, with the layer of their sections where there are any.
+    """
+    states = loads.sections
+    flow = strip_flow(
+        loads.strips, states.relative_speed, states.lift_coefficient, blade, section_radii
+    )
+    if layers is None:
+        return flow
+    table = blade_layers(layers, blade, section_radii)
+    return with_layers(flow, table, states.angle_of_attack, air, trip)
 
 
 def self_noise(

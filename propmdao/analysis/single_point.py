@@ -42,7 +42,7 @@ from propmdao.analysis.elastic.materials import material_of
 from propmdao.analysis.flights.marching import marched, require_marchable
 from propmdao.analysis.request import Asked, Request
 from propmdao.analysis.results import MECHANISMS, Analysis
-from propmdao.analysis.self_noise import BANDS_HZ, self_noise, strip_flow
+from propmdao.analysis.self_noise import BANDS_HZ, flow_of, section_layers, self_noise
 from propmdao.geometry.blade import Blade
 from propmdao.geometry.meshes import MeshRadii, blade_meshes, mesh_radii
 from propmdao.propeller.changes import Change
@@ -97,7 +97,8 @@ def analyze(
         stall_delay, n_crit, trip_upper, trip_lower, measured_drag, elastic, youngs_modulus,
         shear_modulus [Pa], material_density [kg/m^3], unsteady, revolutions, average, timestep_deg,
         start, wake_motion, gust_speed [m/s], gust_shape, gust_start, gust_length, broadband, trip,
-        fidelity; observers, (n, 3) positions [m] as `propmdao.arc` makes them, surroundings.
+        layers, fidelity; observers, (n, 3) positions [m] as `propmdao.arc` makes them,
+        surroundings.
 
     Returns
     -------
@@ -143,6 +144,7 @@ def analyze(
             polars = polars_for(changed, None, transition, measured_drag)
         else:
             sources = dict.fromkeys((name for _, name in changed.airfoils), "given")
+    layers = section_layers(changed, model)
 
     def held(propeller: Propeller) -> Solved:
         """Loads of a propeller that is held in its shape."""
@@ -181,10 +183,7 @@ def analyze(
     sound = _tones(panels, loads, case.rotor.n_blades, state, points, fidelity.n_harmonics)
     noise = None
     if model.noise.broadband is not None:
-        states = loads.sections
-        flow = strip_flow(
-            loads.strips, states.relative_speed, states.lift_coefficient, blade, radii.strips
-        )
+        flow = flow_of(loads, blade, radii.strips, layers, point.air, model.noise.broadband.trip)
         noise = self_noise(flow, case.rotor.n_blades, state, points, model.noise.broadband)
         noise = _noise_by_paths(noise, paths, state, listening.surroundings)
     analysis = Analysis(

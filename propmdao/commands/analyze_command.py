@@ -112,7 +112,7 @@ def add_analyze(commands: argparse._SubParsersAction[Any]) -> None:
         help="polars of an airfoil of the propeller, in files with the endings"
         f" {described(POLAR_READERS)}; may be repeated for other airfoils",
     )
-    add_asked(command, ("broadband", "trip"))
+    add_asked(command, ("broadband", "trip", "layers"))
     command.add_argument(
         "--band",
         action="store_true",

@@ -91,7 +91,7 @@ def add_flyover(commands: argparse._SubParsersAction[Any]) -> None:
         metavar="S",
         help="of what is heard [s]; default until six times the shortest distance, 20 s at least",
     )
-    add_asked(command, ("n_crit", "trip_upper", "trip_lower", "trip"))
+    add_asked(command, ("n_crit", "trip_upper", "trip_lower", "trip", "layers"))
     add_absorption(command)
     command.add_argument(
         "--no-absorption", action="store_true", help="without absorption, which is on by default"

@@ -64,6 +64,7 @@ ASKED_OF_ALL = (
     "trip_lower",
     "broadband",
     "trip",
+    "layers",
 )
 
 

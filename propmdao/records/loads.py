@@ -1,4 +1,4 @@
-"""Loads of a blade, as sources of sound."""
+"""Loads of a blade and boundary layers of its sections, as sources of sound."""
 
 from __future__ import annotations
 
@@ -38,3 +38,25 @@ class PeriodicLoads:
 
     position: jax.Array
     force: jax.Array
+
+
+@record
+class EdgeSide:
+    """Boundary layer of one side of sections at the trailing edge.
+
+    Attributes
+    ----------
+    momentum_over_chord : array
+        Momentum thickness theta over chord.
+    shape_factor : array
+        Shape factor H, displacement over momentum thickness.
+    transition : array
+        x/c of transition, 1 for a layer that is laminar up to the edge.
+    edge_speed : array
+        Velocity at the outer edge of the layer over that of the stream.
+    """
+
+    momentum_over_chord: jax.Array
+    shape_factor: jax.Array
+    transition: jax.Array
+    edge_speed: jax.Array

@@ -11,6 +11,8 @@ from propmdao.records.wake_law import WakeLaw
 
 #: How boundary layers are tripped, as NASA RP-1218 distinguishes them.
 Trip = Literal["none", "light", "heavy"]
+#: Boundary layers at the trailing edge: of the blade's own sections, or the report's fits.
+Layers = Literal["sections", "bpm"]
 #: Planform of the blade's tip, as NASA RP-1218 distinguishes them.
 Tip = Literal["rounded", "square"]
 #: x/c of a trip that is none: transition is left to the boundary layer.
@@ -197,23 +199,27 @@ class SelfNoiseModel:
     ----------
     trip : {"none", "light", "heavy"}
         Trip of the boundary layers in the noise model; it does not change the loads. "none" leaves
-        it to the transition of the loads (`Model.completed`).
+        it to the transition of the loads (`completed`).
     tip : {"rounded", "square"}
         Planform of the blade's tip. "rounded" leaves it to the propeller's description.
+    layers : {"sections", "bpm"}
+        Boundary layers at the trailing edge: those of the sections by the polar model, or the fits
+        of NASA RP-1218 to a NACA 0012.
 
     Raises
     ------
     ValueError
-        If trip or tip is another word.
+        If one of them is another word.
     """
 
     trip: Trip = "none"
     tip: Tip = "rounded"
+    layers: Layers = "sections"
 
     def __post_init__(self) -> None:
         """Refuse words that the model does not know."""
-        for name, known in (("trip", get_args(Trip)), ("tip", get_args(Tip))):
-            value = getattr(self, name)
+        for name, words in (("trip", Trip), ("tip", Tip), ("layers", Layers)):
+            value, known = getattr(self, name), get_args(words)
             if value not in known:
                 raise ValueError(f"{name} must be one of {', '.join(known)}; it is {value!r}")
 
@@ -223,20 +229,21 @@ class SelfNoiseModel:
         Parameters
         ----------
         transition : Transition
-            Transition of the loads.
+            Transition of the loads, completed.
         tip : {"rounded", "square"} or None
             Tip of the propeller's description; None says nothing about it.
 
         Returns
         -------
         SelfNoiseModel
-            Model that is tripped where the loads are.
+            Model whose fits of boundary layers are tripped where the loads are. Layers of the
+            sections are at the transition of the loads, whatever that is.
         """
-        return dataclasses.replace(
-            self,
-            trip=transition.trip_in_noise if self.trip == "none" else self.trip,
-            tip=(tip or "rounded") if self.tip == "rounded" else self.tip,
-        )
+        trip = self.trip
+        if trip == "none" and self.layers == "bpm":
+            trip = transition.trip_in_noise
+        rounded = self.tip == "rounded"
+        return dataclasses.replace(self, trip=trip, tip=(tip or self.tip) if rounded else self.tip)
 
 
 @dataclasses.dataclass(frozen=True)
@@ -283,12 +290,10 @@ class Model:
         Returns
         -------
         Model
-            Model whose transition has no None, and whose broadband noise is tripped where the loads
-            are.
+            Model whose transition has no None, and whose broadband noise follows it.
         """
         transition, noise = self.loads.transition.completed(described), self.noise
-        if noise.broadband is not None:
-            broadband = noise.broadband.completed(transition, tip)
-            noise = dataclasses.replace(noise, broadband=broadband)
+        if (broadband := noise.broadband) is not None:
+            noise = dataclasses.replace(noise, broadband=broadband.completed(transition, tip))
         loads = dataclasses.replace(self.loads, transition=transition)
         return dataclasses.replace(self, loads=loads, noise=noise)

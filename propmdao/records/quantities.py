@@ -289,6 +289,12 @@ _ASKED = (
         " none. Untripped ones shed vortices, which rule at the small angles of cruise; a rough or"
         " dusty blade sheds none",
     ),
+    Quantity(
+        "layers", "", "boundary layers at the trailing edge in broadband noise", SELF_NOISE,
+        "sections", per_node=False, option="--layers", placeholder="{sections,bpm}",
+        help="boundary layers at the trailing edge in the broadband noise: of the blade's own"
+        " sections (default), or the fits of NASA RP-1218 to a NACA 0012",
+    ),
 )  # fmt: skip
 
 _RESULTS = (

@@ -76,11 +76,11 @@ def test_a_flyover_is_of_the_changed_blade():
 
 
 def test_a_blade_tripped_in_the_loads_is_tripped_in_the_noise():
-    """Though its analysis had no broadband noise; its polars are those of trips."""
+    """Though its analysis had no broadband noise; its layers are those of trips."""
     blade = dataclasses.replace(PROPELLER, trip_upper=0.05, trip_lower=0.05)
     found = analyze(blade, rpm=4200.0, speed=8.0, fidelity=COARSE)
     assert all("trips at x/c 0.05 (upper) and 0.05" in source for source in found.polars.values())
-    light = dataclasses.replace(found.model, noise=NoiseModel(SelfNoiseModel("light")))
+    light = dataclasses.replace(found.model, noise=NoiseModel(SelfNoiseModel()))
     flight = Flight(HEIGHT, duration=2.0)
     noise = [
         fly_over(analysis, flight).mean_square["broadband"]

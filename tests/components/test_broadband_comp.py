@@ -7,6 +7,7 @@ from numpy.testing import assert_allclose
 
 from propmdao.acoustics.kinematics.observers import arc
 from propmdao.acoustics.levels.weighting import a_weighting
+from propmdao.aerodynamics.sections.edge_layers.propeller_layers import layers_for
 from propmdao.analysis.self_noise import BANDS_HZ
 from propmdao.components import BroadbandComp
 
@@ -15,6 +16,7 @@ OBSERVERS = arc(1.9, [-45.0, -20.0])
 
 POINTS = {
     "section_speed": np.array([[14.0, 30.0, 47.0, 59.0], [17.0, 36.0, 56.0, 70.0]]),
+    "section_angle_of_attack": np.radians([[4.4, 3.4, 2.5, 1.4], [5.5, 4.6, 3.3, 2.4]]),
     "section_lift_coefficient": np.array([[0.9, 0.8, 0.7, 0.5], [1.0, 0.9, 0.8, 0.7]]),
     "rpm": np.array([4200.0, 5000.0]),
     "speed": np.array([8.0, 1.0]),
@@ -31,7 +33,11 @@ def problem_at(meshes, propeller, small, problem_of):
 
     def problem_at(num_nodes, **values):
         comp = BroadbandComp(
-            propeller=propeller, observers=OBSERVERS, fidelity=small, num_nodes=num_nodes
+            propeller=propeller,
+            observers=OBSERVERS,
+            fidelity=small,
+            num_nodes=num_nodes,
+            layers=layers_for(propeller),
         )
         return problem_of(comp, lattice_nodes=meshes.get_val("lattice_nodes"), **values)
 
@@ -40,7 +46,8 @@ def problem_at(meshes, propeller, small, problem_of):
 
 @pytest.fixture
 def problem(problem_at):
-    names = ("section_speed", "section_lift_coefficient", "rpm", "speed")
+    sections = ("section_speed", "section_angle_of_attack", "section_lift_coefficient")
+    names = (*sections, "rpm", "speed")
     return problem_at(None, **{name: POINTS[name][0] for name in names})
 
 
@@ -77,6 +84,13 @@ def test_twice_as_far_is_six_decibels_quieter(problem):
     problem.set_val("observer_position", 40.0 * OBSERVERS)
     problem.run_model()
     assert_allclose(near - problem.get_val("oaspl_broadband_db"), 6.02, atol=0.05)
+
+
+def test_the_fits_of_the_report_ask_for_no_layers(propeller, small, problem_of):
+    comp = BroadbandComp(propeller=propeller, observers=OBSERVERS, fidelity=small)
+    problem_of(comp)
+    inputs = comp.get_io_metadata(iotypes="input")
+    assert not {"section_layers", "section_angle_of_attack"} & set(inputs)
 
 
 def test_standing_still_is_silence(problem):

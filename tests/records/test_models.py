@@ -22,7 +22,7 @@ def test_by_default_loads_are_viscous_and_noise_is_of_the_tones():
     assert model.loads.viscous and model.loads.stall_delay
     assert model.loads.transition.completed() == Transition(5.0, FREE, FREE)
     assert model.noise.broadband is None
-    assert SelfNoiseModel() == SelfNoiseModel(trip="none", tip="rounded")
+    assert SelfNoiseModel() == SelfNoiseModel(trip="none", tip="rounded", layers="sections")
 
 
 def test_equal_models_are_one_model_to_the_compiler():
@@ -42,6 +42,7 @@ def test_equal_models_are_one_model_to_the_compiler():
     [
         (SelfNoiseModel, {"trip": "some"}, "trip must be one of none, light, heavy; it is 'some'"),
         (SelfNoiseModel, {"tip": "round"}, "tip must be one of rounded, square; it is 'round'"),
+        (SelfNoiseModel, {"layers": "own"}, "layers must be one of sections, bpm; it is 'own'"),
         (Transition, {"n_crit": 0.0}, "n_crit must be within 0.1 ... 30; it is 0"),
         (Transition, {"n_crit": float("nan")}, "n_crit must be within 0.1 ... 30; it is nan"),
         (Transition, {"n_crit": 99.0}, "n_crit must be within 0.1 ... 30; it is 99"),
@@ -95,11 +96,12 @@ def test_what_is_asked_of_transition_goes_before_the_description_and_that_before
 )
 def test_blades_tripped_on_both_sides_are_tripped_in_the_noise(upper, lower, word, trip):
     model = Model(
-        LoadModel(transition=Transition(trip_upper=upper)), NoiseModel(SelfNoiseModel(word))
+        LoadModel(transition=Transition(trip_upper=upper)),
+        NoiseModel(SelfNoiseModel(word, layers="bpm")),
     )
     completed = model.completed(Transition(n_crit=3.0, trip_lower=lower), None)
     assert completed.loads.transition == Transition(3.0, upper, lower)
-    assert completed.noise.broadband == SelfNoiseModel(trip)
+    assert completed.noise.broadband == SelfNoiseModel(trip, layers="bpm")
     assert completed.completed(Transition(), None) == completed  # a saved result, asked again
 
 

@@ -45,7 +45,7 @@ def levels(frequency, values, air, distance, trip):
         section.chord, section.speed, section.angle_of_attack, air.kinematic_viscosity, trip
     )
     toward = radiation(0.0, 0.0, distance, section.speed / air.sound_speed)
-    edge = trailing_edge_noise(frequency, section, layer, toward, air, trip)
+    edge = trailing_edge_noise(frequency, section, layer, toward, air)
     return {name: np.asarray(level_db(p)) for name, p in edge._asdict().items()}
 
 

@@ -14,21 +14,22 @@ from propmdao.acoustics.broadband.smooth import ramp, smooth_abs
 from propmdao.records.models import Trip
 from propmdao.records.pytrees import record
 
-_LIGHT_TRIP = 0.6  # of the heavily tripped thickness, as the report's program has it
+#: Thickness of a lightly tripped layer over a heavily tripped one, as the report's program has it.
+LIGHT_TRIP = 0.6
 _LAST_ANGLE = 25.0  # the fits end here [deg]; larger angles keep its thickness
 _CORNER = 0.25  # half width in which two fits over the angle meet [deg]
 _RE_CORNER = 0.02  # the same over log10 of the Reynolds number
 _ANGLE_CORNER = 0.2  # half width of |alpha| [deg]
-_STANDSTILL = 1e-3  # m/s
+_STANDSTILL = 1e-6  # m/s
 _NO_CHORD = 1e-6  # m
 
 
 @record
 class BoundaryLayer:
-    """Thicknesses at the trailing edge on both sides [m].
+    """Boundary layer at the trailing edge on both sides, thicknesses in m.
 
-    Only `thickness_pressure` and the two displacement thicknesses make noise. Another model's
-    values take their place by ``dataclasses.replace(layer, displacement_suction=...)``.
+    Only `thickness_pressure`, the two displacement thicknesses and `shedding` make noise. Another
+    model's values take their place by ``dataclasses.replace(layer, displacement_suction=...)``.
 
     Attributes
     ----------
@@ -38,6 +39,8 @@ class BoundaryLayer:
         Displacement thickness delta*.
     momentum_pressure, momentum_suction : array
         Momentum thickness theta.
+    shedding : array
+        Share of laminar vortex shedding: 1 for the fits of untripped layers, 0 of tripped ones.
     """
 
     thickness_pressure: Array
@@ -46,6 +49,7 @@ class BoundaryLayer:
     displacement_suction: Array
     momentum_pressure: Array
     momentum_suction: Array
+    shedding: Array
 
 
 def boundary_layer(
@@ -73,7 +77,8 @@ def boundary_layer(
     Returns
     -------
     BoundaryLayer
-        Thicknesses, of the shape to which chord, speed and angle broadcast.
+        Thicknesses, of the shape to which chord, speed and angle broadcast; untripped layers shed
+        laminar vortices, as far as the report's levels go.
 
     Notes
     -----
@@ -113,6 +118,7 @@ def boundary_layer(
         displacement_suction=displacement_0 * displacement_s,
         momentum_pressure=momentum_0 * 10 ** (-0.04508 * alpha + 0.000873 * alpha**2),  # 10
         momentum_suction=momentum_0 * momentum_s,
+        shedding=jnp.full_like(delta_s, 0.0 if tripped else 1.0),
     )
 
 
@@ -123,7 +129,7 @@ def _at_zero_angle(x: Array, trip: Trip) -> tuple[Array, Array, Array]:
     momentum = -0.7079 * x + 0.0404 * x**2
     if trip == "none":
         return 1.6569 + delta, 3.0187 + displacement, 0.2021 + momentum  # 5, 6, 7
-    share = jnp.log10(_LIGHT_TRIP) if trip == "light" else 0.0
+    share = jnp.log10(LIGHT_TRIP) if trip == "light" else 0.0
     # Two fits that meet at Re = 3e5 within 1 %: the step is spread over the corner.
     high = jnp.clip((x - jnp.log10(3e5)) / (2 * _RE_CORNER) + 0.5, 0.0, 1.0)
     high = high * high * (3 - 2 * high)
@@ -151,7 +157,7 @@ def absolute_degrees(angle_of_attack: ArrayLike) -> Array:
 
 
 def nonzero_speed(speed: ArrayLike) -> Array:
-    """Speed that a logarithm can take: 1 mm/s at rest.
+    """Speed that a logarithm can take: 1 micrometre per second at rest.
 
     Parameters
     ----------

@@ -51,8 +51,8 @@ class StripFlow:
         Sections and their flow; each array (n,), or (n_azimuths, n) where the flow changes over
         the turn.
     layer : BoundaryLayer or None
-        Boundary layer by another model, arrays like those of the sections; None for the fits of
-        `boundary_layer`.
+        Boundary layer of `layer_of_sections`, arrays like those of the sections; None for the fits
+        of `boundary_layer`.
     """
 
     position: Array
@@ -87,7 +87,7 @@ def rotor_self_noise(
     frequency_hz : (n_bands,) array
         Mid-band frequencies as the observers hear them, see `third_octave_centers` [Hz].
     model : SelfNoiseModel
-        Trip of the boundary layer and planform of the tip (static).
+        Trip of the boundary layers that have the report's fits, planform of the tip (static).
     n_azimuths : int
         Number of equal steps in the turn (static): those of the sections where their flow changes.
 
@@ -131,7 +131,7 @@ def rotor_self_noise(
         )
         radiated = moving_radiation(chordwise, spanwise, normal, approach)
         emitted = frequency * stretch  # (band, azimuth, strip)
-        edge = trailing_edge_noise(emitted, section, layer, radiated, air, model.trip)
+        edge = trailing_edge_noise(emitted, section, layer, radiated, air)
         radiated_last = jax.tree.map(lambda q: q[..., -1], radiated)
         vortex = tip_noise(emitted[..., -1], tip, radiated_last, air, model.tip)
         # Heard for dt = stretch dtau: that is its weight in the observer's time.

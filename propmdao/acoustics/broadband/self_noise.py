@@ -32,7 +32,7 @@ from propmdao.acoustics.broadband.section import (
 from propmdao.acoustics.broadband.smooth import ramp
 from propmdao.acoustics.levels.decibels import REFERENCE_PRESSURE
 from propmdao.records.air import Air
-from propmdao.records.models import Tip, Trip
+from propmdao.records.models import Tip
 from propmdao.records.pytrees import record
 
 
@@ -102,7 +102,6 @@ def trailing_edge_noise(
     layer: BoundaryLayer,
     radiated: Radiation,
     air: Air,
-    trip: Trip = "none",
 ) -> EdgeNoise:
     """Third-octave mean squares of the mechanisms of a trailing edge.
 
@@ -113,13 +112,11 @@ def trailing_edge_noise(
     section : Section
         Sections of the strips and the flow over them.
     layer : BoundaryLayer
-        Boundary layer of the strips, by `boundary_layer` or by another model.
+        Boundary layer of the strips, by `boundary_layer` or `layer_of_sections`.
     radiated : Radiation
         Directivity toward the observers, by `radiation`.
     air : Air
         The air; the report's levels have no term for its density.
-    trip : {"none", "light", "heavy"}
-        Trip of the boundary layer; a tripped one has no laminar vortex shedding (static).
 
     Returns
     -------
@@ -152,7 +149,7 @@ def trailing_edge_noise(
     g5 = shedding_spectra.blunt_shape(
         log_f + blunt.log_strouhal, blunt.wedge, blunt.plate, blunt.edge_degrees
     )
-    shed = _power(g1 + laminar.level) if trip == "none" else jnp.zeros_like(separation)
+    shed = layer.shedding * _power(g1 + laminar.level)
     return EdgeNoise(
         pressure_side=attached * _power(a_p + strip.level_p),  # 25
         suction_side=attached * _power(a_s + strip.level_s),  # 26

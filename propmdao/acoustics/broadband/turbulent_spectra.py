@@ -1,12 +1,13 @@
 """Spectral shapes A and B and amplitudes K1, delta K1, K2 of trailing-edge noise.
 
 Symbols and equation numbers are those of Brooks, Pope and Marcolini, NASA RP-1218 (1989). Their
-pieces of A and B join smoothly within the report's rounding (0.002 dB); the others are rounded by
+pieces of A and B miss each other by up to 0.002 dB and are moved to meet; the others are rounded by
 less than 0.15 dB where not said otherwise. Angles are in degrees, levels in dB.
 """
 
 from __future__ import annotations
 
+from math import sqrt
 from typing import NamedTuple
 
 import jax.numpy as jnp
@@ -91,7 +92,11 @@ class Shape(NamedTuple):
         root = jnp.sqrt(self.height - 886.788 * jnp.square(jnp.minimum(x, start)))
         c3, c2, c1, c0 = curve.cubic
         tail = ((c3 * x + c2) * x + c1) * x + c0
-        line_and_cubic = jnp.where(x < curve.end, slope * x + intercept, tail)
+        # The report's pieces miss each other by its rounding: each begins where the last one ends.
+        end = curve.end
+        to_arc = sqrt(self.height - 886.788 * start**2) - self.offset - (slope * start + intercept)
+        to_line = slope * end + intercept + to_arc - (((c3 * end + c2) * end + c1) * end + c0)
+        line_and_cubic = jnp.where(x < end, slope * x + intercept + to_arc, tail + to_line)
         return jnp.where(x < start, root - self.offset, line_and_cubic)
 
 

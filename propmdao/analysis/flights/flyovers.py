@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import dataclasses
+
 import numpy as np
 import numpy.typing as npt
 
@@ -18,14 +20,14 @@ from propmdao.acoustics.sources.flyover import flyover_histories
 from propmdao.acoustics.sources.rotors import Rotor, equally_spaced
 from propmdao.analysis.flights.flyover_results import STEP, Flight, Flyover
 from propmdao.analysis.results import Analysis
-from propmdao.analysis.self_noise import BANDS_HZ, self_noise, strip_flow
+from propmdao.analysis.self_noise import BANDS_HZ, flow_of, section_layers, self_noise
 from propmdao.geometry.blade import Blade
 from propmdao.geometry.lattice import strip_interpolation
 from propmdao.geometry.meshes import propeller_surface
 from propmdao.geometry.surface import surface_panels
 from propmdao.propeller.description import Propeller
 from propmdao.records.air import require_known_air
-from propmdao.records.models import SelfNoiseModel
+from propmdao.records.models import Model, NoiseModel, SelfNoiseModel
 from propmdao.runtime.finite import require_finite
 
 Floats = npt.NDArray[np.float64]
@@ -163,15 +165,24 @@ def _tones(
 
 def _flow(analysis: Analysis, propeller: Propeller) -> StripFlow:
     """Strips of the blade as broadband noise sees them."""
-    states, stations = analysis.loads.sections, propeller.r_over_R
-    n_spanwise = analysis.model.fidelity.n_spanwise
-    return strip_flow(
-        analysis.loads.strips,
-        states.relative_speed,
-        states.lift_coefficient,
+    model = _with_noise(analysis.model, propeller)
+    noise = model.noise.broadband
+    assert noise is not None
+    return flow_of(
+        analysis.loads,
         Blade.from_propeller(propeller),
-        strip_interpolation(stations, n_spanwise),
+        strip_interpolation(propeller.r_over_R, model.fidelity.n_spanwise),
+        section_layers(propeller, model),
+        analysis.point.air,
+        noise.trip,
     )
+
+
+def _with_noise(model: Model, propeller: Propeller) -> Model:
+    """Model of an analysis, with the broadband noise that a flyover has in any case."""
+    noise = model.noise.broadband or SelfNoiseModel()
+    model = dataclasses.replace(model, noise=NoiseModel(noise))
+    return model.completed(propeller.transition, propeller.tip)
 
 
 def _broadband(
@@ -187,12 +198,11 @@ def _broadband(
     # frequencies are those of flying along times Doppler's factor.
     pose = poses(track, times)
     beside = np.einsum("tij,ti->tj", np.asarray(pose.rotation), place - np.asarray(pose.origin))
-    propeller, model = analysis.changed_propeller, analysis.model.noise.broadband
-    if model is None:
-        model = SelfNoiseModel().completed(analysis.model.loads.transition, propeller.tip)
-    n_blades, state = int(propeller.n_blades), analysis.state
+    propeller, state = analysis.changed_propeller, analysis.state
+    model = _with_noise(analysis.model, propeller).noise.broadband
+    assert model is not None
     noises = (
-        self_noise(flow, n_blades, state, position[None], model, BANDS_HZ / factor)
+        self_noise(flow, int(propeller.n_blades), state, position[None], model, BANDS_HZ / factor)
         for position, factor in zip(beside, doppler, strict=True)
     )
     return np.array([noise.total[0] for noise in noises])

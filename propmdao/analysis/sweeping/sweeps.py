@@ -16,7 +16,6 @@ from propmdao.analysis.sweeping.points import N_POINTS, Point
 from propmdao.formats.result_table import STATUS, ResultTable, table_files
 from propmdao.propeller.description import Propeller
 from propmdao.propeller.identity import checksum
-from propmdao.records.models import Model
 from propmdao.records.plain import to_plain
 from propmdao.records.quantities import (
     BROADBAND_LEVELS,
@@ -69,7 +68,7 @@ def sweep(
         Processes that analyse; 1: only this one.
     **asked
         Single values as `propmdao.analyze` takes them, the same for all points: observers,
-        surroundings, viscous, stall_delay, broadband, trip, fidelity, the air.
+        surroundings, viscous, stall_delay, broadband, trip, layers, fidelity, the air.
 
     Returns
     -------
@@ -188,7 +187,8 @@ def _same_columns(request: Request) -> dict[str, Any]:
 
 def _other_settings(request: Request) -> Iterator[str]:
     """What differs from the defaults and has no column of its own, as name=value."""
-    default = Request.of(rpm=0.0)
+    broadband = request.model.noise.broadband is not None
+    default = Request.of(rpm=0.0, broadband=broadband)
     own = ("viscous", "stall_delay", "trip", "rho")
 
     def leaves(value: Any, name: str = "") -> Iterator[tuple[str, Any]]:
@@ -199,7 +199,7 @@ def _other_settings(request: Request) -> Iterator[str]:
             yield name, value
 
     for of_request, of_default in (
-        (request.model, Model(noise=request.model.noise)),
+        (request.model, default.model),
         (request.point.air, default.point.air),
     ):
         known = dict(leaves(to_plain(of_default)))

@@ -64,6 +64,7 @@ ASKED_OPTIONS = (
     "measured_drag",
     "broadband",
     "trip",
+    "layers",
 )
 
 

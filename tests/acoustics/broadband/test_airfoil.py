@@ -29,7 +29,7 @@ def noise(section, trip="none", sight=(0.3, 0.2, 1.0), layer=None, bands=BANDS):
     if layer is None:
         layer = boundary_layer(section.chord, section.speed, section.angle_of_attack, NU, trip)
     toward = radiation(*sight, section.speed / C)
-    return trailing_edge_noise(bands, section, layer, toward, AIR, trip)
+    return trailing_edge_noise(bands, section, layer, toward, AIR)
 
 
 def test_directivity_as_printed():
@@ -85,7 +85,8 @@ def test_suction_side_is_thicker_and_lower_in_pitch(section):
 def test_light_trip_is_six_tenths_of_the_heavy_one():
     heavy = boundary_layer(0.1, 50.0, 0.05, NU, "heavy")
     light = boundary_layer(0.1, 50.0, 0.05, NU, "light")
-    for a, b in zip(jax.tree.leaves(heavy), jax.tree.leaves(light), strict=True):
+    assert not (heavy.shedding or light.shedding)
+    for a, b in zip(jax.tree.leaves(heavy)[:6], jax.tree.leaves(light)[:6], strict=True):
         assert float(b / a) == pytest.approx(0.6, rel=1e-12)
 
 

@@ -41,7 +41,7 @@ def levels(section, sight=(0.3, 0.2, 1.0), trip="none", tip="rounded"):
     layer = boundary_layer(
         section.chord, section.speed, section.angle_of_attack, AIR.kinematic_viscosity, trip
     )
-    edge = trailing_edge_noise(BANDS, section, layer, toward, AIR, trip)
+    edge = trailing_edge_noise(BANDS, section, layer, toward, AIR)
     return level_db(jnp.stack([*edge, tip_noise(BANDS, section, toward, AIR, tip)]))
 
 

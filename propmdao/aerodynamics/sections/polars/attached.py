@@ -64,13 +64,8 @@ def packed(name: str, polars: AttachedPolars, unit: FloatArray) -> dict[str, npt
     whole = np.round(values / unit[:, None, None])
     if not np.abs(whole).max() <= np.iinfo(np.int16).max:
         raise ValueError(f"coefficients of '{name}' are too large to be packed")
-    # Second differences over angle are small. Their sign goes into the last bit, so that the upper
-    # bytes are mostly 0; bytes of a kind lie together. What overflows on the way comes back.
-    from_zero = np.pad(whole.astype(np.int16), [(0, 0)] * (whole.ndim - 1) + [(2, 0)])
-    steps = from_zero[..., 2:] - 2 * from_zero[..., 1:-1] + from_zero[..., :-2]
-    folded = ((steps << 1) ^ (steps >> 15)).view(np.uint16)
     return {
-        name: np.stack([folded & 0xFF, folded >> 8]).astype(np.uint8),
+        name: folded(whole),
         f"{name} limits": np.stack([polars.low, polars.high]).astype(np.int8),
         f"{name} unit": unit,
     }
@@ -91,11 +86,50 @@ def unpacked(members: Mapping[str, npt.NDArray], name: str) -> AttachedPolars:
     AttachedPolars
         The polars, rounded to their unit.
     """
-    lower, upper = members[name].astype(np.uint16)
-    folded = lower | (upper << 8)
-    steps = ((folded >> 1) ^ -(folded & 1)).view(np.int16)
-    whole = np.cumsum(np.cumsum(steps, axis=-1, dtype=np.int16), axis=-1, dtype=np.int16)
-    coefficients: FloatArray = whole * members[f"{name} unit"][:, None, None]
+    coefficients: FloatArray = unfolded(members[name]) * members[f"{name} unit"][:, None, None]
     coefficients[:, :, 1] = np.exp(coefficients[:, :, 1])
     low, high = members[f"{name} limits"].astype(np.intp)
     return AttachedPolars(coefficients, low, high)
+
+
+def folded(whole: npt.NDArray) -> npt.NDArray[np.uint8]:
+    """Turn whole numbers, smooth over the last axis, into bytes that compress well.
+
+    Parameters
+    ----------
+    whole : (..., n) array
+        Whole numbers of 16 bits.
+
+    Returns
+    -------
+    (2, ..., n) array
+        Lower and upper bytes of their second differences, for `unfolded`.
+    """
+    # Second differences are small. Their sign goes into the last bit, so that the upper bytes are
+    # mostly 0; bytes of a kind lie together. What overflows on the way comes back.
+    from_zero = np.pad(whole.astype(np.int16), [(0, 0)] * (whole.ndim - 1) + [(2, 0)])
+    steps = from_zero[..., 2:] - 2 * from_zero[..., 1:-1] + from_zero[..., :-2]
+    signed = ((steps << 1) ^ (steps >> 15)).view(np.uint16)
+    return np.stack([signed & 0xFF, signed >> 8]).astype(np.uint8)
+
+
+def unfolded(halves: npt.NDArray) -> npt.NDArray[np.int16]:
+    """Turn the bytes of `folded` back into whole numbers.
+
+    Parameters
+    ----------
+    halves : (2, ..., n) array
+        Lower and upper bytes.
+
+    Returns
+    -------
+    (..., n) array
+        The whole numbers.
+    """
+    lower, upper = halves.astype(np.uint16)
+    signed = lower | (upper << 8)
+    steps = ((signed >> 1) ^ -(signed & 1)).view(np.int16)
+    whole: npt.NDArray[np.int16] = np.cumsum(
+        np.cumsum(steps, axis=-1, dtype=np.int16), axis=-1, dtype=np.int16
+    )
+    return whole

@@ -46,14 +46,14 @@ def neuralfoil_settings() -> str:
     return f"NeuralFoil {version('neuralfoil')}, model {MODEL_SIZE}, incompressible"
 
 
-def neuralfoil_polars(
+def neuralfoil_results(
     camber: FloatArray,
     thickness: FloatArray,
     alpha_deg: FloatArray,
     re: FloatArray,
     transition: Transition,
-) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
-    """Compute the coefficients of sections over angles and Reynolds numbers.
+) -> dict[str, FloatArray]:
+    """Compute sections over angles and Reynolds numbers.
 
     Parameters
     ----------
@@ -69,8 +69,9 @@ def neuralfoil_polars(
 
     Returns
     -------
-    cl, cd, cm, confidence : (n, n_re, n_alpha) arrays
-        Coefficients, the moment about the quarter chord, and NeuralFoil's confidence, 0..1.
+    dict of (n, n_re, n_alpha) arrays
+        NeuralFoil's results by its own names: coefficients, the moment about the quarter chord, its
+        confidence, 0..1, transition and boundary layers.
 
     Notes
     -----
@@ -101,11 +102,40 @@ def neuralfoil_polars(
         xtr_lower=transition.trip_lower,
         model_size=MODEL_SIZE,
     )
-    cl, cd, cm, confidence = (
-        np.asarray(result[key], dtype=float).reshape(len(shapes), *angles.shape)
-        for key in ("CL", "CD", "CM", "analysis_confidence")
-    )
-    return cl, cd, cm, confidence
+    return {
+        key: np.asarray(values, dtype=float).reshape(len(shapes), *angles.shape)
+        for key, values in result.items()
+    }
+
+
+def neuralfoil_polars(
+    camber: FloatArray,
+    thickness: FloatArray,
+    alpha_deg: FloatArray,
+    re: FloatArray,
+    transition: Transition,
+) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
+    """Compute the coefficients of sections over angles and Reynolds numbers.
+
+    Parameters
+    ----------
+    camber, thickness : (n, n_chord) arrays
+        Camber line and full thickness over chord of each section on
+        `airfoils.airfoil.CHORD_FRACTION`.
+    alpha_deg : (n_alpha,) array
+        Angles from the chord line [deg].
+    re : (n_re,) array
+        Reynolds numbers.
+    transition : Transition
+        Transition of the boundary layers, completed.
+
+    Returns
+    -------
+    cl, cd, cm, confidence : (n, n_re, n_alpha) arrays
+        Coefficients, the moment about the quarter chord, and NeuralFoil's confidence, 0..1.
+    """
+    result = neuralfoil_results(camber, thickness, alpha_deg, re, transition)
+    return result["CL"], result["CD"], result["CM"], result["analysis_confidence"]
 
 
 def neuralfoil_grid(

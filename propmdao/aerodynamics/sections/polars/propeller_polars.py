@@ -134,7 +134,7 @@ def polars_for(
         for source in sources.values()
         if source.table is not None
     }
-    weights = _shape_weights(propeller, [sources[name].shape for _, name in propeller.airfoils])
+    weights = shape_weights(propeller, [sources[name].shape for _, name in propeller.airfoils])
     tables = [
         user.get(name) or _Values(np.log(REYNOLDS), _family_values(name, transition, measured_drag))
         for name in weights
@@ -171,8 +171,21 @@ def _substitute_message(name: str) -> str:
     )
 
 
-def _shape_weights(propeller: Propeller, shapes: list[str]) -> dict[str, FloatArray]:
-    """Share of each shape in each station, (n_stations,) by shape, those in use alone."""
+def shape_weights(propeller: Propeller, shapes: list[str]) -> dict[str, FloatArray]:
+    """Tell what share each shape has in each station.
+
+    Parameters
+    ----------
+    propeller : Propeller
+        The propeller.
+    shapes : list of str
+        Shape of each of its airfoils.
+
+    Returns
+    -------
+    dict of (n_stations,) arrays
+        Shares by shape, those in use alone; at each station they sum to 1.
+    """
     positions = [position for position, _ in propeller.airfoils]
     share = np.stack(
         [np.interp(propeller.r_over_R, positions, unit) for unit in np.eye(len(positions))]
@@ -202,17 +215,32 @@ def _family_values(name: str, transition: Transition, measured_drag: bool) -> Fl
     """Tables of a shape of the catalogue, or of any airfoil by NeuralFoil."""
     if name in SHAPES and shipped_shares(transition):
         return _shipped_values(name, transition, measured_drag)
-    if name in SHAPES:
-        camber, thickness = shape(name)
-    else:
-        section = find_airfoil(name)
-        peak = section.max_camber
-        # Camber added to a flat section has the mean line that `Blade` gives it.
-        camber = section.camber / peak if peak else shape("naca4")[0]
-        thickness = section.thickness / section.max_thickness
+    camber, thickness = scaled_shape(name)
     return _neuralfoil_values(
         name, camber.tobytes(), thickness.tobytes(), transition, measured_drag
     )
+
+
+def scaled_shape(name: str) -> tuple[FloatArray, FloatArray]:
+    """Get camber line and thickness of a shape of the catalogue or of any airfoil.
+
+    Parameters
+    ----------
+    name : str
+        Name of the shape or of the airfoil.
+
+    Returns
+    -------
+    camber, thickness : (n_chord,) arrays
+        Camber line and thickness, each scaled to a maximum of 1.
+    """
+    if name in SHAPES:
+        return shape(name)
+    section = find_airfoil(name)
+    peak = section.max_camber
+    # Camber added to a flat section has the mean line that `Blade` gives it.
+    camber = section.camber / peak if peak else shape("naca4")[0]
+    return camber, section.thickness / section.max_thickness
 
 
 @functools.lru_cache(maxsize=16)

@@ -1,0 +1,1 @@
+"""Boundary layers of a blade's own sections at the trailing edge."""
