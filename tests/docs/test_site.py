@@ -129,6 +129,15 @@ def test_validation_book_says_what_its_tests_hold() -> None:
     assert (axes.get_title(), axes.get_xlabel(), axes.get_ylabel()) == ("p", "x, m", "y")
 
 
+def test_index_of_an_accented_letter_is_beside_it() -> None:
+    pytest.importorskip("sphinx")
+    formula = _script("mathml").mathml
+    plain = re.sub(r"\s|<math[^>]*>|</math>", "", formula(r"\dot v_n", block=True))
+    assert plain.startswith('<msub><moveraccent="true"><mi>v</mi><mo')
+    assert plain.endswith("</mover><mi>n</mi></msub>")
+    assert "munderover" in formula(r"\sum_{j=1}^N j < 2 \; r", block=True)
+
+
 def test_the_json_schema_is_that_of_results() -> None:
     schema = _script("json_schema")
     assert schema.FILE.read_text("utf-8") == schema.text()

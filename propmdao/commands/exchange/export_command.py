@@ -126,10 +126,11 @@ def _write_case(options: argparse.Namespace, propeller: Propeller) -> None:
     write_case(analysis, options.to)
     incidence = analysis.point.incidence_deg
     tilted = f" at an incidence of {incidence:g} deg" if incidence else ""
+    n_observers = len(listening.observers)
     print_line(
         f"{options.to}: PSU-WOPWOP case of {propeller.name} at {analysis.rpm:.1f} rpm,"
         f" {analysis.point.speed:g} m/s{tilted}, thrust {float(analysis.loads.thrust):.4g} N,"
-        f" {len(listening.observers)} observers"
+        f" {n_observers} observer{'s' if n_observers > 1 else ''}"
     )
     from propmdao.commands import report
 

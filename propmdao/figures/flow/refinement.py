@@ -12,6 +12,8 @@ from propmdao.figures.style import GRID, LINE_STYLES, RUN_COLORS, headline, lite
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
+LEAST_SPAN = 0.01  # of an axis over its values
+
 
 def refinement(
     resolution: Sequence[float] | Sequence[str],
@@ -49,8 +51,13 @@ def refinement(
             )  # fmt: skip
         axes.set_ylabel(name)
         axes.grid(**GRID)
-        # Numbers as they are: an offset beside the axis is overlooked.
+        # Numbers as they are: an offset beside the axis is overlooked, and so is how little it is
+        # that rounding makes of the whole height.
         axes.ticklabel_format(axis="y", useOffset=False)
+        low, high = axes.get_ylim()
+        least = LEAST_SPAN * max(abs(low), abs(high))
+        if high - low < least:
+            axes.set_ylim(0.5 * (low + high - least), 0.5 * (low + high + least))
     if any(next(iter(panels.values()))):
         figure.legend(*rows[0].get_legend_handles_labels(), loc="outside upper right", ncols=4)
     rows[-1].set_xlabel(label)

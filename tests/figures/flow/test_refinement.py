@@ -31,3 +31,9 @@ def test_names_stand_at_equal_distances_and_one_line_has_no_legend():
     figure.canvas.draw()
     assert [text.get_text() for text in axes.get_xticklabels()] == ["25 x 40", "65 x 100"]
     assert not figure.legends
+
+
+def test_rounding_is_not_drawn_as_a_change():
+    figure = refinement([5.0, 10.0], {"thrust, N": {"": [0.5, 0.5 + 1e-10]}}, "time step, deg")
+    low, high = figure.axes[0].get_ylim()
+    assert high - low == pytest.approx(0.005, rel=0.01)
