@@ -23,8 +23,8 @@ from propmdao.records.quantities import (
     HUB_LOADS,
     LEVELS,
     RESULTS,
-    Quantity,
 )
+from propmdao.records.units import Quantity
 
 FILE = Path(__file__).parent / "reference" / "analysis.schema.json"
 NUMBER, TEXT, YES_OR_NO = ({"type": name} for name in ("number", "string", "boolean"))

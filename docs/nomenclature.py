@@ -10,9 +10,8 @@ from propmdao.records.quantities import (
     HUB_LOADS,
     LEVELS,
     RESULTS,
-    Quantity,
 )
-from propmdao.records.units import Range
+from propmdao.records.units import Quantity, Range
 
 PAGE = Path(__file__).with_name("conventions.md")
 HEADS = ("name", "unit", "default", "range", "meaning", "JSON, column", "component", "option")

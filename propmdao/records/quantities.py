@@ -6,10 +6,9 @@ nomenclature page (docs/conventions.md) come from this table. Nothing here is sl
 
 from __future__ import annotations
 
-import dataclasses
 from typing import Any
 
-from propmdao.records.units import Range
+from propmdao.records.units import Quantity, Range
 
 # Records that hold quantities that are asked for, as a dotted path from the request; results have
 # none.
@@ -18,72 +17,6 @@ LOADS, SELF_NOISE, FIDELITY = "model.loads", "model.noise.broadband", "model.fid
 TRANSITION = "model.loads.transition"
 ELASTIC = "model.loads.elastic"
 UNSTEADY = "model.loads.unsteady"
-
-
-@dataclasses.dataclass(frozen=True)
-class Quantity:
-    """A quantity and its names.
-
-    Attributes
-    ----------
-    name : str
-        Name in Python and of the variable of a component.
-    unit : str
-        Unit as OpenMDAO writes it; empty where there is none.
-    meaning : str
-        Meaning of the quantity, one line.
-    record : str
-        Record of the request that holds the quantity, as a dotted path; empty for a result.
-    default : object
-        Value where the user gives none; None where the propeller or another quantity decides.
-    json : str
-        Key in JSON and column in tables; by default the name.
-    variable : str
-        Name in OpenMDAO; by default the name.
-    per_node : bool
-        Whether the quantity belongs to an operating point, and so has the axis of nodes in
-        components.
-    option : str
-        Option of the command line; empty where there is none. A switch turns the default over.
-    placeholder : str
-        Word that stands for the value of the option in its help; empty for a switch.
-    help : str
-        Help of the option; by default the meaning with the unit.
-    allowed : Range or None
-        Values that are allowed; None for words, switches and results.
-    axes : tuple of str
-        Axes of a vector's components; empty for a number. In JSON and components a vector is a
-        list, in tables a column for each axis.
-    """
-
-    name: str
-    unit: str
-    meaning: str
-    record: str = ""
-    default: Any = None
-    json: str = ""
-    variable: str = ""
-    per_node: bool = True
-    option: str = ""
-    placeholder: str = ""
-    help: str = ""
-    allowed: Range | None = None
-    axes: tuple[str, ...] = ()
-
-    def __post_init__(self) -> None:
-        """Fill in the names that are the same."""
-        # The attribute of a frozen dataclass can only be set this way.
-        for attribute in ("json", "variable"):
-            if not getattr(self, attribute):
-                object.__setattr__(self, attribute, self.name)
-        if not self.help:
-            unit = f" [{self.unit}]" if self.unit else ""
-            object.__setattr__(self, "help", self.meaning + unit)
-
-    @property
-    def columns(self) -> tuple[str, ...]:
-        """Columns in tables: one, or one for each axis of a vector."""
-        return tuple(f"{self.json}_{axis}" for axis in self.axes) or (self.json,)
 
 
 _ASKED = (

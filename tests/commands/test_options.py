@@ -8,7 +8,8 @@ import pytest
 
 from propmdao.commands.options import asked_of
 from propmdao.commands.program import build_parser
-from propmdao.records.quantities import ASKED, Quantity
+from propmdao.records.quantities import ASKED
+from propmdao.records.units import Quantity
 
 OPTIONS = {quantity.option: quantity for quantity in ASKED.values() if quantity.option}
 COMMANDS = ("analyze", "sweep", "flyover", "export")

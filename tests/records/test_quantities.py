@@ -26,11 +26,10 @@ from propmdao.records.quantities import (
     LEVELS,
     RESULTS,
     VARIABLES,
-    Quantity,
     require_asked,
 )
 from propmdao.records.states import OperatingPoint
-from propmdao.records.units import Range
+from propmdao.records.units import Quantity, Range
 
 RECORDS = {
     "point": OperatingPoint,
