@@ -80,7 +80,9 @@ Levels are in dB re 20 uPa, rms. SI units throughout. Exit status: 0, or 2 with 
 ASKED_OPTIONS = tuple(
     name
     for name, quantity in ASKED.items()
-    if quantity.option and name not in ("chord_factor", "diameter", "n_blades", "broadband", "trip")
+    if quantity.option
+    and not quantity.record.startswith("model.noise")
+    and name not in ("chord_factor", "diameter", "n_blades")
 )
 
 
