@@ -1,6 +1,8 @@
-"""Broadband self-noise of a propeller from its aerodynamic solution."""
+"""Broadband noise of a propeller from its aerodynamic solution."""
 
 from __future__ import annotations
+
+import dataclasses
 
 import jax.numpy as jnp
 from jax import Array
@@ -9,9 +11,11 @@ from jax.typing import ArrayLike
 from propmdao.acoustics.broadband.rotor import StripFlow, rotor_self_noise
 from propmdao.acoustics.broadband.section import Section
 from propmdao.acoustics.broadband.self_noise import SelfNoise, third_octave_centers
+from propmdao.acoustics.inflow.rotor import rotor_inflow_noise
 from propmdao.aerodynamics.lattice.strips import Strips
 from propmdao.geometry.blade import Blade, SpanInterpolation
 from propmdao.geometry.trailing_edge import trailing_edge
+from propmdao.records.air import Turbulence
 from propmdao.records.models import SelfNoiseModel
 from propmdao.records.states import RotorState
 from propmdao.runtime.compilation import compiled
@@ -73,8 +77,9 @@ def self_noise(
     observers: ArrayLike,
     model: SelfNoiseModel = SelfNoiseModel(),  # noqa: B008 - frozen
     bands_hz: ArrayLike = BANDS_HZ,
+    turbulence: Turbulence | None = None,
 ) -> SelfNoise:
-    """Self-noise in third octaves.
+    """Self-noise in third octaves, and the noise of turbulence that flows in.
 
     Parameters
     ----------
@@ -90,6 +95,8 @@ def self_noise(
         Tripping of the boundary layers, planform of the tip.
     bands_hz : (n_bands,) array
         Mid-band frequencies as the observers hear them [Hz].
+    turbulence : Turbulence, optional
+        Turbulence that flows in; by default none does.
 
     Returns
     -------
@@ -98,4 +105,8 @@ def self_noise(
     """
     speed = flow.section.speed
     azimuths = {"n_azimuths": len(speed)} if speed.ndim == 2 else {}
-    return rotor_self_noise(flow, n_blades, state, observers, bands_hz, model=model, **azimuths)
+    noise = rotor_self_noise(flow, n_blades, state, observers, bands_hz, model=model, **azimuths)
+    if turbulence is None:
+        return noise
+    inflow = rotor_inflow_noise(flow, n_blades, state, turbulence, observers, bands_hz, **azimuths)
+    return dataclasses.replace(noise, inflow_turbulence=inflow)

@@ -15,6 +15,7 @@ from propmdao.commands.observer_options import (
     listening_of,
 )
 from propmdao.commands.options import (
+    TURBULENCE_OPTIONS,
     add_asked,
     add_command,
     add_propeller,
@@ -129,7 +130,7 @@ def add_analyze(commands: argparse._SubParsersAction[Any]) -> None:
         help="polars of an airfoil of the propeller, in files with the endings"
         f" {described(POLAR_READERS)}; may be repeated for other airfoils",
     )
-    add_asked(command, ("broadband", "trip"))
+    add_asked(command, ("broadband", "trip", *TURBULENCE_OPTIONS))
     command.add_argument(
         "--band",
         action="store_true",

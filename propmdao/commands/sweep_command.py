@@ -15,6 +15,7 @@ from propmdao.commands.observer_options import (
     listening_of,
 )
 from propmdao.commands.options import (
+    TURBULENCE_OPTIONS,
     add_asked,
     add_command,
     add_propeller,
@@ -67,6 +68,7 @@ ASKED_OF_ALL = (
     "trip_lower",
     "broadband",
     "trip",
+    *TURBULENCE_OPTIONS,
 )
 
 

@@ -191,9 +191,15 @@ def _broadband(
     if model is None:
         model = SelfNoiseModel(analysis.model.loads.transition.trip_in_noise)
     powers = [
-        self_noise(flow, n_blades, analysis.state, position[None], model, BANDS_HZ / factor).total[
-            0
-        ]
+        self_noise(
+            flow,
+            n_blades,
+            analysis.state,
+            position[None],
+            model,
+            BANDS_HZ / factor,
+            analysis.point.turbulent,
+        ).total[0]
         for position, factor in zip(beside, doppler, strict=True)
     ]
     return np.array(powers)
