@@ -1,4 +1,4 @@
-"""Sections at work to broadband self-noise at observers."""
+"""Sections at work to broadband noise at observers."""
 
 from __future__ import annotations
 
@@ -24,11 +24,14 @@ from propmdao.components.inputs.noise_inputs import (
     declare_azimuths,
     declare_layers,
     declare_observers,
+    declare_turbulent_inflow,
     noise_state,
 )
+from propmdao.components.inputs.point_inputs import TURBULENCE_INPUTS, add_point_inputs
 from propmdao.geometry.blade import Blade
 from propmdao.geometry.lattice import strip_interpolation
 from propmdao.propeller.description import Propeller
+from propmdao.records.air import Turbulence
 from propmdao.records.models import SelfNoiseModel
 from propmdao.records.quantities import BROADBAND_LEVELS
 from propmdao.runtime.finite import Axis
@@ -71,6 +74,10 @@ class BroadbandComp(NodesComp):
         ``deg``; an input with `n_azimuths`.
     density, sound_speed : float
         Density of the undisturbed air and its speed of sound, ``kg/m**3``, ``m/s``.
+    turbulence_intensity, turbulence_length_scale : float
+        Root mean square of each component of the velocity of turbulence that flows in, ``m/s``, and
+        its longitudinal integral length scale, ``m``; inputs with `turbulent_inflow`. Both are 0 by
+        default, and then nothing of it is heard.
     observer_position : (n_observers, 3) array
         Positions from the rotor centre, +z toward thrust, flight in the plane of +z and +x, ``m``.
     oaspl_db, oaspl_dba : (n_observers,) arrays
@@ -101,6 +108,8 @@ class BroadbandComp(NodesComp):
         axial flight.
     fidelity : Fidelity
         Numbers of panels.
+    turbulent_inflow : bool
+        Whether turbulence may flow in, which adds the noise of Amiet's model.
     trip : {"none", "light", "heavy"}
         Tripping of the boundary layers; "none" is the default.
     layers : SectionLayers or None
@@ -124,6 +133,7 @@ class BroadbandComp(NodesComp):
         declare_azimuths(self.options)
         declare_layers(self.options)
         declare_model(self.options, ["fidelity", "trip"])
+        declare_turbulent_inflow(self.options)
 
     def setup(self) -> None:
         propeller, fidelity = self.options["propeller"], self.options["fidelity"]
@@ -143,6 +153,8 @@ class BroadbandComp(NodesComp):
             "thickness_over_chord", val=np.asarray(blade.thickness_over_chord), tags=STATIC
         )
         add_noise_inputs(self)
+        if self.options["turbulent_inflow"]:
+            add_point_inputs(self, TURBULENCE_INPUTS)
         self.add_point_input("oaspl_db", _SILENCE_DB, shape=(n_observers,), desc="Of the tones.")
         self.add_point_input("oaspl_dba", _SILENCE_DB, shape=(n_observers,), desc="Of the tones.")
         self.add_point_output(
@@ -178,12 +190,15 @@ def _broadband(inputs: Arrays, constants: Any, static: tuple[int, SelfNoiseModel
         blade,
         section_radii,
     )
-    state = noise_state(inputs)
+    state, observers = noise_state(inputs), inputs["observer_position"]
     if layers is not None:
         table = EdgeLayerTable(layers.alpha, layers.log_re, inputs["section_layers"])
         angle = inputs["section_angle_of_attack"]
         flow = with_layers(flow, table, angle, state.air, model.trip)
-    noise = self_noise(flow, n_blades, state, inputs["observer_position"], model)
+    turbulence = None
+    if TURBULENCE_INPUTS[0] in inputs:
+        turbulence = Turbulence(*(inputs[name][0] for name in TURBULENCE_INPUTS))
+    noise = self_noise(flow, n_blades, state, observers, model, turbulence=turbulence)
     broadband_db = level_db(noise.total.sum(axis=1))
     broadband_dba = level_dba(BANDS_HZ, noise.total)
     return {

@@ -27,7 +27,7 @@ from propmdao.components.inputs.model_options import (
     declare_model,
     model_of,
 )
-from propmdao.components.inputs.noise_inputs import declare_observers
+from propmdao.components.inputs.noise_inputs import declare_observers, declare_turbulent_inflow
 from propmdao.components.inputs.rotor_inputs import declare_polars, declare_tilted
 from propmdao.components.inputs.rpm_bounds import declare_bounds
 from propmdao.components.rotation_speed_comp import RotationSpeedComp
@@ -152,6 +152,9 @@ design_lift_coefficient : (n_stations,) arrays
     layers : {"sections", "bpm"}
         Boundary layers in broadband noise: of the blade's own sections (default), or the fits of
         NASA RP-1218 to a NACA 0012.
+    turbulent_inflow : bool
+        Whether turbulence may flow in, with `broadband`: `turbulence_intensity`, ``m/s``, and
+        `turbulence_length_scale`, ``m``, are inputs then, 0 by default.
     camber : {"camber_over_chord", "design_lift_coefficient"}
         Distribution that gives the camber; "camber_over_chord" is the default.
 
@@ -186,6 +189,7 @@ design_lift_coefficient : (n_stations,) arrays
         declare("trim_method", "solve", values=TRIM_METHODS, desc="rule for the rotation speed")
         declare_control_points(self.options)
         declare_camber(self.options)
+        declare_turbulent_inflow(self.options)
 
     def setup(self) -> None:
         options = self.options
@@ -194,6 +198,8 @@ design_lift_coefficient : (n_stations,) arrays
         is_heard = options["observers"] is not None
         if model.noise.broadband is not None and not is_heard:
             raise ValueError("broadband noise is heard at observers; there are none")
+        if options["turbulent_inflow"] and model.noise.broadband is None:
+            raise ValueError("turbulent_inflow is heard as broadband noise: ask for broadband, too")
         if options["tilted"] and self._follows_thrust("two_point"):
             raise ValueError('trim_method "two_point" is of axial flight: tilted must be False')
         polars = None
@@ -278,7 +284,11 @@ design_lift_coefficient : (n_stations,) arrays
         self.add_subsystem(
             "broadband",
             BroadbandComp(
-                propeller=propeller, trip=model.noise.broadband.trip, layers=layers, **shared
+                propeller=propeller,
+                trip=model.noise.broadband.trip,
+                layers=layers,
+                turbulent_inflow=self.options["turbulent_inflow"],
+                **shared,
             ),
             promotes_inputs=["*"],
             promotes_outputs=["*"],

@@ -83,6 +83,22 @@ def declare_layers(options: OptionsDictionary) -> None:
     )
 
 
+def declare_turbulent_inflow(options: OptionsDictionary) -> None:
+    """Declare whether turbulence may flow in.
+
+    Parameters
+    ----------
+    options : OptionsDictionary
+        Options of a component or group.
+    """
+    options.declare(
+        "turbulent_inflow",
+        False,
+        types=bool,
+        desc="intensity and length scale of turbulence that flows in are inputs",
+    )
+
+
 def add_noise_inputs(component: NodesComp) -> None:
     """Declare the inputs that `noise_state` reads, and the observers.
 

@@ -9,13 +9,15 @@ import openmdao.api as om
 
 from propmdao.components.bases.array_function import Arrays
 from propmdao.components.bases.nodes_comp import NodesComp
-from propmdao.records.air import Air
+from propmdao.records.air import Air, Turbulence, require_turbulence
 from propmdao.records.pytrees import Scalar
-from propmdao.records.quantities import AIR, ASKED, require_asked
+from propmdao.records.quantities import AIR, ASKED, TURBULENCE, require_asked
 from propmdao.records.states import RotorState
 
 #: Names of all properties of the air; each of them may be an input.
 AIR_INPUTS = tuple(name for name, quantity in ASKED.items() if quantity.record == AIR)
+#: Names of intensity and length scale of turbulence.
+TURBULENCE_INPUTS = tuple(name for name, quantity in ASKED.items() if quantity.record == TURBULENCE)
 
 
 def add_point_inputs(component: NodesComp, names: Iterable[str]) -> None:
@@ -47,13 +49,15 @@ def check_point_inputs(inputs: Arrays) -> None:
     Raises
     ------
     om.AnalysisError
-        If rotation or flight is backwards, the incidence beyond its range, or a property of the air
-        not positive.
+        If rotation or flight is backwards, the incidence beyond its range, a property of the air
+        not positive, or turbulence has no length scale.
     """
     try:
         for name in ("rpm", "speed", "incidence_deg", *AIR_INPUTS):
             if (variable := ASKED[name].variable) in inputs:
                 require_asked(name, inputs[variable].item())
+        if TURBULENCE_INPUTS[0] in inputs:
+            require_turbulence(Turbulence(*(inputs[name].item() for name in TURBULENCE_INPUTS)))
     except ValueError as error:
         raise om.AnalysisError(str(error)) from error
 

@@ -9,7 +9,7 @@ from typing import Any, TypedDict
 import numpy.typing as npt
 
 from propmdao.propeller.changes import Change
-from propmdao.records.air import Air
+from propmdao.records.air import Air, Turbulence
 from propmdao.records.fidelity import Fidelity, GustShape, Marching, Start, WakeMotion
 from propmdao.records.listening import Listening, Surroundings
 from propmdao.records.models import (
@@ -41,6 +41,8 @@ class Asked(TypedDict, total=False):
     temperature: float
     pressure: float
     relative_humidity: float
+    turbulence_intensity: float
+    turbulence_length_scale: float
     twist_offset_deg: float
     chord_factor: float
     diameter: float | None
@@ -89,12 +91,26 @@ class Request:
         How loads and noise are computed.
     listening : Listening
         Who listens, and what is around.
+
+    Raises
+    ------
+    ValueError
+        If turbulence flows in and no broadband noise is asked for.
     """
 
     point: OperatingPoint
     change: Change = Change()
     model: Model = dataclasses.field(default_factory=Model)
     listening: Listening = dataclasses.field(default_factory=Listening)
+
+    def __post_init__(self) -> None:
+        """Refuse turbulence that nobody would hear."""
+        intensity = self.point.turbulence.turbulence_intensity
+        if intensity > 0.0 and self.model.noise.broadband is None:
+            raise ValueError(
+                f"turbulence_intensity {intensity:g} m/s is about broadband noise: ask for"
+                " broadband noise, too"
+            )
 
     def to_dict(self) -> dict[str, Any]:
         """Return it as plain numbers, the part of ``propmdao analyze --json`` that was asked."""
@@ -156,7 +172,9 @@ class Request:
             places.setdefault(place, {})[name] = value
         made: dict[str, Any] = {
             "point": lambda: OperatingPoint(
-                **places.get("point", {}), air=Air(**places.get("point.air", {}))
+                **places.get("point", {}),
+                air=Air(**places.get("point.air", {})),
+                turbulence=Turbulence(**places.get("point.turbulence", {})),
             ),
             "change": lambda: Change(**places.get("change", {})),
             "model": lambda: _model(places),

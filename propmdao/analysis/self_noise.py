@@ -1,4 +1,4 @@
-"""Broadband self-noise of a propeller from its aerodynamic solution."""
+"""Broadband noise of a propeller from its aerodynamic solution."""
 
 from __future__ import annotations
 
@@ -13,6 +13,7 @@ from propmdao.acoustics.broadband.rotor import StripFlow, rotor_self_noise
 from propmdao.acoustics.broadband.section import Section
 from propmdao.acoustics.broadband.section_layers import layer_of_sections
 from propmdao.acoustics.broadband.self_noise import SelfNoise, third_octave_centers
+from propmdao.acoustics.inflow.rotor import rotor_inflow_noise
 from propmdao.aerodynamics.lattice.strips import Strips
 from propmdao.aerodynamics.sections.edge_layers.propeller_layers import layers_for
 from propmdao.aerodynamics.sections.edge_layers.tables import (
@@ -26,7 +27,7 @@ from propmdao.aerodynamics.solutions.result import RotorLoads, TiltedLoads
 from propmdao.geometry.blade import Blade, SpanInterpolation
 from propmdao.geometry.trailing_edge import trailing_edge
 from propmdao.propeller.description import Propeller
-from propmdao.records.air import Air
+from propmdao.records.air import Air, Turbulence
 from propmdao.records.models import Model, SelfNoiseModel, Trip
 from propmdao.records.states import RotorState
 from propmdao.runtime.compilation import compiled
@@ -191,8 +192,9 @@ def self_noise(
     observers: ArrayLike,
     model: SelfNoiseModel = SelfNoiseModel(),  # noqa: B008 - frozen
     bands_hz: ArrayLike = BANDS_HZ,
+    turbulence: Turbulence | None = None,
 ) -> SelfNoise:
-    """Self-noise in third octaves.
+    """Self-noise in third octaves, and the noise of turbulence that flows in.
 
     Parameters
     ----------
@@ -208,6 +210,8 @@ def self_noise(
         Tripping of the boundary layers, planform of the tip.
     bands_hz : (n_bands,) array
         Mid-band frequencies as the observers hear them [Hz].
+    turbulence : Turbulence, optional
+        Turbulence that flows in; by default none does.
 
     Returns
     -------
@@ -216,4 +220,8 @@ def self_noise(
     """
     speed = flow.section.speed
     azimuths = {"n_azimuths": len(speed)} if speed.ndim == 2 else {}
-    return rotor_self_noise(flow, n_blades, state, observers, bands_hz, model=model, **azimuths)
+    noise = rotor_self_noise(flow, n_blades, state, observers, bands_hz, model=model, **azimuths)
+    if turbulence is None:
+        return noise
+    inflow = rotor_inflow_noise(flow, n_blades, state, turbulence, observers, bands_hz, **azimuths)
+    return dataclasses.replace(noise, inflow_turbulence=inflow)

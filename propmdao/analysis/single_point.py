@@ -93,12 +93,12 @@ def analyze(
         Called after every step of a march in time, with a `MarchProgress`.
     **asked
         Single values: rpm, thrust [N], speed [m/s], incidence_deg, density [kg/m^3] and the rest of
-        the air; twist_offset_deg, chord_factor, diameter, n_blades; viscous, blade_element,
-        stall_delay, n_crit, trip_upper, trip_lower, measured_drag, elastic, youngs_modulus,
-        shear_modulus [Pa], material_density [kg/m^3], unsteady, revolutions, average, timestep_deg,
-        start, wake_motion, gust_speed [m/s], gust_shape, gust_start, gust_length, broadband, trip,
-        layers, fidelity; observers, (n, 3) positions [m] as `propmdao.arc` makes them,
-        surroundings.
+        the air; turbulence_intensity [m/s], turbulence_length_scale [m]; twist_offset_deg,
+        chord_factor, diameter, n_blades; viscous, blade_element, stall_delay, n_crit, trip_upper,
+        trip_lower, measured_drag, elastic, youngs_modulus, shear_modulus [Pa], material_density
+        [kg/m^3], unsteady, revolutions, average, timestep_deg, start, wake_motion, gust_speed
+        [m/s], gust_shape, gust_start, gust_length, broadband, trip, layers, fidelity; observers,
+        (n, 3) positions [m] as `propmdao.arc` makes them, surroundings.
 
     Returns
     -------
@@ -184,7 +184,14 @@ def analyze(
     noise = None
     if model.noise.broadband is not None:
         flow = flow_of(loads, blade, radii.strips, layers, point.air, model.noise.broadband.trip)
-        noise = self_noise(flow, case.rotor.n_blades, state, points, model.noise.broadband)
+        noise = self_noise(
+            flow,
+            case.rotor.n_blades,
+            state,
+            points,
+            model.noise.broadband,
+            turbulence=point.turbulent,
+        )
         noise = _noise_by_paths(noise, paths, state, listening.surroundings)
     analysis = Analysis(
         propeller=propeller,

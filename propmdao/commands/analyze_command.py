@@ -15,6 +15,7 @@ from propmdao.commands.observer_options import (
     listening_of,
 )
 from propmdao.commands.options import (
+    TURBULENCE_OPTIONS,
     add_asked,
     add_command,
     add_propeller,
@@ -82,7 +83,7 @@ ASKED_OPTIONS = tuple(
     for name, quantity in ASKED.items()
     if quantity.option
     and not quantity.record.startswith("model.noise")
-    and name not in ("chord_factor", "diameter", "n_blades")
+    and name not in ("chord_factor", "diameter", "n_blades", *TURBULENCE_OPTIONS)
 )
 
 
@@ -113,7 +114,7 @@ def add_analyze(commands: argparse._SubParsersAction[Any]) -> None:
         help="polars of an airfoil of the propeller, in files with the endings"
         f" {described(POLAR_READERS)}; may be repeated for other airfoils",
     )
-    add_asked(command, ("broadband", "trip", "layers"))
+    add_asked(command, ("broadband", "trip", "layers", *TURBULENCE_OPTIONS))
     command.add_argument(
         "--band",
         action="store_true",

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from propmdao.commands.observer_options import add_absorption, air_of
 from propmdao.commands.options import (
+    TURBULENCE_OPTIONS,
     add_asked,
     add_command,
     add_propeller,
@@ -91,7 +92,8 @@ def add_flyover(commands: argparse._SubParsersAction[Any]) -> None:
         metavar="S",
         help="of what is heard [s]; default until six times the shortest distance, 20 s at least",
     )
-    add_asked(command, ("n_crit", "trip_upper", "trip_lower", "trip", "layers"))
+    noise = ("trip", "layers", *TURBULENCE_OPTIONS)
+    add_asked(command, ("n_crit", "trip_upper", "trip_lower", *noise))
     add_absorption(command)
     command.add_argument(
         "--no-absorption", action="store_true", help="without absorption, which is on by default"

@@ -12,6 +12,8 @@ from propmdao.formats.endings import PROPELLER_READERS, described
 from propmdao.records.quantities import ASKED
 
 MOST_VALUES = 1000
+#: Turbulence that flows in, of commands with broadband noise.
+TURBULENCE_OPTIONS = ("turbulence_intensity", "turbulence_length_scale")
 
 
 def add_command(

@@ -38,7 +38,7 @@ def print_analyses(analyses: Sequence[dict[str, Any]]) -> None:
         console.print(_levels(analyses))
         broadband = first["model"]["noise"]["broadband"]
         trip = "" if broadband is None else f", blades {TRIPPED[broadband['trip']]}"
-        console.print(f"Levels: {_around(first)}{trip}.", highlight=False)
+        console.print(f"Levels: {_around(first)}{trip}{_turbulence(first)}.", highlight=False)
         if broadband is None:
             console.print(TONES_ONLY)
     else:
@@ -82,7 +82,8 @@ def print_flyover(result: dict[str, Any]) -> None:
     console.print(
         f"Loudest {loudest['time']:+.1f} s from overhead, heard over {loudest['distance']:.1f} m"
         f" from elevation {loudest['elevation_deg']:+.0f} deg of the rotor plane; half seconds,"
-        f" {len(history)} of them. Blades {TRIPPED[trip]}.",
+        f" {len(history)} of them. Blades {TRIPPED[trip]}"
+        f"{_turbulence(result)}.",
         highlight=False,
     )
     print_files(result)
@@ -93,6 +94,12 @@ def _flight(result: dict[str, Any]) -> str:
     incidence = result["point"]["incidence_deg"]
     tilted = f" at an incidence of {incidence:g} deg" if incidence else ""
     return f"speed {result['speed']:.4g} m/s{tilted}"
+
+
+def _turbulence(result: dict[str, Any]) -> str:
+    """Words for turbulence that flows in, where there is any."""
+    intensity, length = result["point"]["turbulence"].values()
+    return f", turbulence of {intensity:g} m/s and {length:g} m flows in" if intensity else ""
 
 
 def _around(result: dict[str, Any]) -> str:

@@ -14,6 +14,7 @@ from propmdao.commands.observer_options import (
     listening_of,
 )
 from propmdao.commands.options import (
+    TURBULENCE_OPTIONS,
     add_asked,
     add_command,
     add_propeller,
@@ -65,6 +66,7 @@ ASKED_OF_ALL = (
     "broadband",
     "trip",
     "layers",
+    *TURBULENCE_OPTIONS,
 )
 
 

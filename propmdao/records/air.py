@@ -1,10 +1,11 @@
-"""The air that a propeller flies in and that its sound crosses."""
+"""The air that a propeller flies in and that its sound crosses, and its turbulence."""
 
 from __future__ import annotations
 
 import math
 
 from propmdao.records.pytrees import Scalar, record
+from propmdao.records.quantities import require_asked
 
 # The International Standard Atmosphere (ISO 2533): the troposphere and Sutherland's law.
 _GAS_CONSTANT, _HEAT_RATIO, _GRAVITY = 287.05287, 1.4, 9.80665  # J/(kg K), 1, m/s2
@@ -119,3 +120,42 @@ def require_known_air(air: Air) -> None:
             raise ValueError(
                 f"absorption: {name} must be within {low:g} ... {high:g} {unit}; it is {value:g}"
             )
+
+
+@record
+class Turbulence:
+    """Isotropic turbulence with von Karman's spectrum; by default there is none.
+
+    Attributes
+    ----------
+    turbulence_intensity : scalar
+        Root mean square of each component of the velocity [m/s].
+    turbulence_length_scale : scalar
+        Longitudinal integral length scale [m].
+    """
+
+    turbulence_intensity: Scalar = 0.0
+    turbulence_length_scale: Scalar = 0.0
+
+
+def require_turbulence(turbulence: Turbulence) -> None:
+    """Refuse turbulence that there is not; not traceable by JAX.
+
+    Parameters
+    ----------
+    turbulence : Turbulence
+        Intensity and length scale.
+
+    Raises
+    ------
+    ValueError
+        If one of them is out of range, or there is an intensity and no length scale.
+    """
+    intensity, length = turbulence.turbulence_intensity, turbulence.turbulence_length_scale
+    require_asked("turbulence_intensity", intensity)
+    require_asked("turbulence_length_scale", length)
+    if intensity > 0.0 and not length > 0.0:
+        raise ValueError(
+            f"turbulence_length_scale must be above 0 m where there is a turbulence_intensity, here"
+            f" {float(intensity):g} m/s; it is 0"
+        )

@@ -17,6 +17,7 @@ LOADS, SELF_NOISE, FIDELITY = "model.loads", "model.noise.broadband", "model.fid
 TRANSITION = "model.loads.transition"
 ELASTIC = "model.loads.elastic"
 UNSTEADY = "model.loads.unsteady"
+TURBULENCE = "point.turbulence"
 
 
 _ASKED = (
@@ -64,6 +65,20 @@ _ASKED = (
     ),
     Quantity("relative_humidity", "", "relative humidity of the air, 0 ... 1", AIR, 0.7,
         allowed=Range(0.0, 1.0),
+    ),
+    Quantity(
+        "turbulence_intensity", "m/s", "root mean square of each component of the velocity of"
+        " turbulence that flows in", TURBULENCE, 0.0, option="--turbulence-intensity",
+        placeholder="M_S",
+        help="turbulence that flows into the rotor, heard as broadband noise: root mean square of"
+        " each component of the velocity [m/s], default 0: none",
+        allowed=Range(0.0, 100.0, "m/s"),
+    ),
+    Quantity(
+        "turbulence_length_scale", "m", "longitudinal integral length scale of the turbulence that"
+        " flows in", TURBULENCE, 0.0, option="--turbulence-length", placeholder="M",
+        help="its longitudinal integral length scale [m]",
+        allowed=Range(1e-5, 1e4, "m", or_zero=True),
     ),
     Quantity(
         "twist_offset_deg", "deg", "added to the blade angle everywhere", CHANGE, 0.0,

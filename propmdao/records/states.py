@@ -8,7 +8,7 @@ import math
 import jax.numpy as jnp
 from jax import Array
 
-from propmdao.records.air import Air
+from propmdao.records.air import Air, Turbulence, require_turbulence
 from propmdao.records.pytrees import Scalar, record
 from propmdao.records.quantities import require_asked
 from propmdao.records.units import RAD_PER_S
@@ -95,6 +95,8 @@ class OperatingPoint:
         Angle between the shaft and the direction of flight, 0 is axial flight [deg].
     air : Air
         The undisturbed air.
+    turbulence : Turbulence
+        Turbulence that flows in, for broadband noise; the loads know of none.
 
     Raises
     ------
@@ -107,6 +109,7 @@ class OperatingPoint:
     speed: float = 0.0
     incidence_deg: float = 0.0
     air: Air = dataclasses.field(default_factory=Air)
+    turbulence: Turbulence = dataclasses.field(default_factory=Turbulence)
 
     def __post_init__(self) -> None:
         """Refuse points without exactly one of rpm and thrust, or with values out of range."""
@@ -121,6 +124,7 @@ class OperatingPoint:
         # Not by Air itself, which JAX makes of what it traces.
         for field in dataclasses.fields(self.air):
             require_asked(field.name, getattr(self.air, field.name))
+        require_turbulence(self.turbulence)
 
     def at(self, rotation_speed: Scalar) -> RotorState:
         """State of the rotor at a rotation speed.
@@ -137,6 +141,11 @@ class OperatingPoint:
         """
         incidence = math.radians(self.incidence_deg)
         return RotorState(rotation_speed, float(self.speed), self.air, incidence)
+
+    @property
+    def turbulent(self) -> Turbulence | None:
+        """Turbulence that flows in, None where there is none."""
+        return self.turbulence if self.turbulence.turbulence_intensity > 0.0 else None
 
     def require_axial(self, what: str) -> None:
         """Refuse an incidence where only axial flight is modelled.

@@ -14,7 +14,7 @@ from propmdao.analysis.single_point import analyze
 from propmdao.formats.propellers import load_propeller
 from propmdao.propeller.changes import Change
 from propmdao.propeller.identity import checksum
-from propmdao.records.air import Air
+from propmdao.records.air import Air, Turbulence
 from propmdao.records.fidelity import Fidelity
 from propmdao.records.listening import Listening, ObserverGroup, Surroundings
 from propmdao.records.models import LoadModel, Model, NoiseModel, SelfNoiseModel, Transition
@@ -98,6 +98,18 @@ def test_tripping_is_of_broadband_noise(trip):
     with pytest.raises(ValueError, match=f"trip '{trip}' is about broadband noise: ask for"):
         Request.of(rpm=4000.0, trip=trip)
     assert Request.of(rpm=4000.0, trip="none").model == Model()
+
+
+def test_turbulence_is_of_broadband_noise_and_has_a_length():
+    eddies = {"turbulence_intensity": 0.5, "turbulence_length_scale": 0.05}
+    with pytest.raises(ValueError, match="0.5 m/s is about broadband noise: ask for broadband"):
+        Request.of(rpm=4000.0, **eddies)
+    with pytest.raises(ValueError, match="turbulence_length_scale must be above 0 m where there"):
+        Request.of(rpm=4000.0, broadband=True, turbulence_intensity=0.5)
+    request = Request.of(rpm=4000.0, broadband=True, **eddies)
+    assert request.point.turbulent == Turbulence(0.5, 0.05)
+    assert Request.of(rpm=4000.0, turbulence_length_scale=0.05).point.turbulent is None
+    assert Request.from_dict(request.to_dict()).point == request.point
 
 
 @pytest.mark.parametrize("name", ["n_crit", "trip_upper", "trip_lower"])

@@ -23,6 +23,8 @@ SCALES = {
     "incidence": 0.1,
     "density": 1e-2,
     "sound_speed": 1.0,
+    "turbulence_intensity": 1e-2,
+    "turbulence_length_scale": 1e-3,
     "diameter": 1e-3,
     "chord_over_R": 1e-3,
     "beta": 1e-3,

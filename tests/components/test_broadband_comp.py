@@ -31,13 +31,14 @@ POINTS = {
 def problem_at(meshes, propeller, small, problem_of):
     """Problem with a `BroadbandComp` of so many nodes and the given values."""
 
-    def problem_at(num_nodes, **values):
+    def problem_at(num_nodes, turbulent_inflow=False, **values):
         comp = BroadbandComp(
             propeller=propeller,
             observers=OBSERVERS,
             fidelity=small,
             num_nodes=num_nodes,
             layers=layers_for(propeller),
+            turbulent_inflow=turbulent_inflow,
         )
         return problem_of(comp, lattice_nodes=meshes.get_val("lattice_nodes"), **values)
 
@@ -107,6 +108,38 @@ def test_broadband_partials(problem, assert_directional, forward):
     problem.set_val("oaspl_dba", 35.0)
     problem.run_model()
     assert_directional(problem, 1e-6, forward)
+
+
+def test_turbulence_that_flows_in(problem, problem_at):
+    problem.run_model()
+    calm = problem.get_val("broadband_mean_square_pressure")
+    names = ("section_speed", "section_lift_coefficient", "rpm", "speed")
+    point = {name: POINTS[name][0] for name in names}
+    assert "turbulence_intensity" not in problem.model.comp.get_io_metadata(iotypes="input")
+    windy = problem_at(None, turbulent_inflow=True, **point)
+    windy.run_model()
+    assert_allclose(windy.get_val("broadband_mean_square_pressure"), calm)
+    windy.set_val("turbulence_intensity", 0.5, units="m/s")
+    with pytest.raises(om.AnalysisError, match="turbulence_length_scale must be above 0 m"):
+        windy.run_model()
+    windy.set_val("turbulence_length_scale", 50.0, units="mm")
+    windy.run_model()
+    once = windy.get_val("broadband_mean_square_pressure") - calm
+    assert np.all(once > 0.0)
+    windy.set_val("turbulence_intensity", 1.0)
+    windy.run_model()
+    twice = windy.get_val("broadband_mean_square_pressure") - calm
+    assert_allclose(twice, 4.0 * once, rtol=1e-6)
+
+
+@pytest.mark.slow
+def test_partials_with_turbulence(problem_at, assert_directional):
+    names = ("section_speed", "section_lift_coefficient", "rpm", "speed")
+    point = {name: POINTS[name][0] for name in names}
+    eddies = {"turbulence_intensity": 0.5, "turbulence_length_scale": 0.05}
+    problem = problem_at(None, turbulent_inflow=True, **point, **eddies)
+    problem.run_model()
+    assert_directional(problem, 1e-6, False)
 
 
 def test_supersonic_tip_is_a_failed_analysis(problem):

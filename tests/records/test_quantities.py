@@ -9,7 +9,7 @@ from collections import Counter
 import pytest
 
 from propmdao.propeller.changes import Change
-from propmdao.records.air import Air
+from propmdao.records.air import Air, Turbulence
 from propmdao.records.fidelity import Marching
 from propmdao.records.listening import Listening
 from propmdao.records.models import (
@@ -34,6 +34,7 @@ from propmdao.records.units import Quantity, Range
 RECORDS = {
     "point": OperatingPoint,
     "point.air": Air,
+    "point.turbulence": Turbulence,
     "change": Change,
     "model.loads": LoadModel,
     "model.loads.transition": Transition,
@@ -76,9 +77,10 @@ def test_what_may_be_asked_is_a_field_of_its_record_with_the_same_default(quanti
 
 
 def test_every_number_of_point_air_and_change_stands_in_the_table():
-    for record in ("point", "point.air", "change", "model.loads.transition"):
+    for record in ("point", "point.air", "point.turbulence", "change", "model.loads.transition"):
         named = {quantity.name for quantity in ASKED.values() if quantity.record == record}
-        assert named == {field.name for field in dataclasses.fields(RECORDS[record])} - {"air"}
+        fields = {field.name for field in dataclasses.fields(RECORDS[record])}
+        assert named == fields - {"air", "turbulence"}
 
 
 @pytest.mark.parametrize(
@@ -86,7 +88,8 @@ def test_every_number_of_point_air_and_change_stands_in_the_table():
     [
         quantity
         for quantity in ASKED.values()
-        if quantity.record in ("point", "point.air", "change", "model.loads.transition")
+        if quantity.record
+        in ("point", "point.air", "point.turbulence", "change", "model.loads.transition")
     ],
     ids=lambda quantity: quantity.name,
 )

@@ -94,7 +94,8 @@ def rotor_self_noise(
     Returns
     -------
     SelfNoise
-        Mean squares of each mechanism, (n_observers, n_bands) [Pa^2].
+        Mean squares of each mechanism, (n_observers, n_bands) [Pa^2]; turbulence that flows in is
+        none of them (`rotor_inflow_noise`).
 
     Notes
     -----
@@ -125,9 +126,10 @@ def rotor_self_noise(
 
     @jax.checkpoint  # the reverse derivative recomputes one observer at a time
     def noise_at(observer: Array) -> SelfNoise:
-        sight, approach, stretch = _emission(strips.position, observer, state, n_azimuths)
+        sight, approach, stretch = emission(strips.position, observer, state, n_azimuths)
         chordwise, spanwise, normal = (
-            sight[0] * x + sight[1] * y + sight[2] * z for x, y, z in (e.T for e in _axes(strips))
+            sight[0] * x + sight[1] * y + sight[2] * z
+            for x, y, z in (e.T for e in strip_axes(strips))
         )
         radiated = moving_radiation(chordwise, spanwise, normal, approach)
         emitted = frequency * stretch  # (band, azimuth, strip)
@@ -139,6 +141,7 @@ def rotor_self_noise(
         return SelfNoise(
             **{name: share * jnp.sum(p * stretch, (1, 2)) for name, p in edge._asdict().items()},
             tip=share * (vortex @ stretch[:, -1]),
+            inflow_turbulence=jnp.zeros(len(frequency)),
         )
 
     return jax.lax.map(noise_at, jnp.asarray(observers, float))
@@ -174,18 +177,48 @@ def tip_section(strips: StripFlow) -> Section:
     return jax.tree.map(there, strips.section)
 
 
-def _axes(strips: StripFlow) -> tuple[Array, Array, Array]:
-    """Chord, span and normal directions."""
+def strip_axes(strips: StripFlow) -> tuple[Array, Array, Array]:
+    """Directions of the strips of blade 1.
+
+    Parameters
+    ----------
+    strips : StripFlow
+        Strips of blade 1 at azimuth 0.
+
+    Returns
+    -------
+    tuple of three (n, 3) arrays
+        Chord, span and normal directions.
+    """
     normal = jnp.cross(strips.chord_direction, strips.span_direction)
     return strips.chord_direction, strips.span_direction, normal
 
 
-def _emission(
+def emission(
     position: Array, observer: Array, state: RotorState, n_azimuths: int
 ) -> tuple[tuple[Array, Array, Array], Array, Array]:
-    """Lines of sight from emission to reception, in the blade's frame, 1 - M cos xi and dt / dtau.
+    """Ways of the sound of points of blade 1 to an observer who flies along.
 
-    The observer is turned back instead of the blade forward; each (azimuth, strip).
+    Parameters
+    ----------
+    position : (n, 3) array
+        Points of blade 1 at azimuth 0 [m].
+    observer : (3,) array
+        Position from the rotor centre, moving with it [m].
+    state : RotorState
+        How the rotor turns and flies.
+    n_azimuths : int
+        Number of equal steps in the turn.
+
+    Returns
+    -------
+    sight : tuple of three arrays
+        Components of the vectors from emission to reception, in the blade's frame [m]: the observer
+        is turned back instead of the blade forward. Here and below each (n_azimuths, n).
+    approach : array
+        1 - M cos xi of the motion through the air.
+    stretch : array
+        dt / dtau: how long the observer hears what a point emits.
     """
     azimuth = 2 * np.pi * np.arange(n_azimuths)[:, None] / n_azimuths
     cos, sin = np.cos(azimuth), np.sin(azimuth)

@@ -52,6 +52,8 @@ class SelfNoise:
         Vortex shedding of a blunt trailing edge.
     tip : array
         Noise of the tip vortex.
+    inflow_turbulence : array
+        Noise of turbulence that flows in; no self-noise, but heard with it.
     """
 
     pressure_side: Array
@@ -60,12 +62,14 @@ class SelfNoise:
     laminar_shedding: Array
     bluntness: Array
     tip: Array
+    inflow_turbulence: Array
 
     @property
     def total(self) -> Array:
         """Mean square of all mechanisms: they are not correlated."""
         turbulent_edge = self.pressure_side + self.suction_side + self.separation
-        return turbulent_edge + self.laminar_shedding + self.bluntness + self.tip
+        shed = self.laminar_shedding + self.bluntness + self.tip
+        return turbulent_edge + shed + self.inflow_turbulence
 
 
 class EdgeNoise(NamedTuple):

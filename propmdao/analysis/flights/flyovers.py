@@ -201,8 +201,9 @@ def _broadband(
     propeller, state = analysis.changed_propeller, analysis.state
     model = _with_noise(analysis.model, propeller).noise.broadband
     assert model is not None
+    n_blades, turbulence = int(propeller.n_blades), analysis.point.turbulent
     noises = (
-        self_noise(flow, int(propeller.n_blades), state, position[None], model, BANDS_HZ / factor)
+        self_noise(flow, n_blades, state, position[None], model, BANDS_HZ / factor, turbulence)
         for position, factor in zip(beside, doppler, strict=True)
     )
     return np.array([noise.total[0] for noise in noises])

@@ -201,6 +201,7 @@ def _other_settings(request: Request) -> Iterator[str]:
     for of_request, of_default in (
         (request.model, default.model),
         (request.point.air, default.point.air),
+        (request.point.turbulence, default.point.turbulence),
     ):
         known = dict(leaves(to_plain(of_default)))
         for name, value in leaves(to_plain(of_request)):
