@@ -20,7 +20,7 @@ from propmdao.aerodynamics.coefficients import Coefficients
 from propmdao.aerodynamics.solutions.result import RotorLoads, TiltedLoads, failure
 from propmdao.analysis.elastic.deflections import Deflection
 from propmdao.analysis.request import Request
-from propmdao.analysis.self_noise import BANDS_HZ
+from propmdao.analysis.self_noise import BANDS_HZ, noise_range
 from propmdao.propeller.changes import Change
 from propmdao.propeller.description import Propeller
 from propmdao.propeller.identity import checksum
@@ -120,7 +120,7 @@ class Analysis:
             sweep_over_R and rake_over_R of an elastic blade), hub_force [N] and hub_moment [N m],
             means over a turn in the axes of the rotor that do not turn, and a list of observers
             with their levels. At an incidence also azimuths, with force and moment of blade 1 at
-            each.
+            each; with broadband noise broadband_range, of `noise_range`.
         """
         levels = jax.tree.map(np.asarray, _levels(self.tones))
         places = directions(self.listening.observers).rounded()
@@ -147,6 +147,7 @@ class Analysis:
             "deflection": to_plain(self.deflection),
             **{name: np.asarray(getattr(self.loads, name)).tolist() for name in HUB_LOADS},
             **self._around_the_turn(),
+            **self._range_of_noise(),
             "observers": [
                 {
                     "elevation_deg": float(places.elevation_deg[i]),
@@ -157,6 +158,12 @@ class Analysis:
                 for i in range(len(self.listening.observers))
             ],
         }
+
+    def _range_of_noise(self) -> dict[str, Any]:
+        """How far the blade is outside of the measurements of broadband noise."""
+        if self.broadband is None:
+            return {}
+        return {"broadband_range": noise_range(self.loads, self.point.air)}
 
     def _around_the_turn(self) -> dict[str, Any]:
         """Loads of blade 1 at its azimuths, at an incidence."""
@@ -195,6 +202,9 @@ class Analysis:
             noise["spl"] = np.asarray(self.broadband.total)[i]
             center, bands = _bands_with_noise(self.tones, i, noise["spl"])
             result |= _levels_with_noise(self.tones, i, noise["spl"])
+            result["broadband_dba"] = {
+                name: float(level_dba(BANDS_HZ, noise[name])) for name in MECHANISMS
+            }
             in_bands = {name: np.asarray(level_db(power)) for name, power in noise.items()}
             result["broadband"] = [
                 {"frequency_hz": float(f)}

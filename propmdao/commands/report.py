@@ -10,13 +10,13 @@ from rich import box
 from rich.console import Console
 from rich.table import Table
 
+from propmdao.commands.broadband_report import print_mechanisms, trip_words
 from propmdao.propeller.description import Propeller
 from propmdao.records.listening import Surroundings
 from propmdao.runtime.terminal import plain_console, print_line, printable
 
 # What the numbers leave out stands below them, where it is read.
 INVISCID = "Inviscid lattice: no profile drag, so torque and power are low and eta is high."
-TRIPPED = {"none": "untripped", "light": "lightly tripped", "heavy": "heavily tripped"}
 BAND = (
     "First line: with the input at its upper end, second: at its lower end. Band: root of the sum"
     " of their squares, what raises a number apart from what lowers it."
@@ -138,10 +138,11 @@ def print_analyses(analyses: Sequence[dict[str, Any]]) -> None:
     if any(analysis["observers"] for analysis in analyses):
         console.print(_levels(analyses))
         broadband = first["model"]["noise"]["broadband"]
-        trip = "" if broadband is None else f", blades {TRIPPED[broadband['trip']]}"
+        trip = "" if broadband is None else f", blades {trip_words(first['model'])}"
         console.print(f"Levels: {_around(first)}{trip}.", highlight=False)
         if broadband is None:
             console.print(TONES_ONLY)
+        print_mechanisms(console, analyses)
     else:
         console.print("No observers: --arc RADIUS ELEVATION... adds their noise.\n")
     print_doubts(analyses)
@@ -177,11 +178,10 @@ def print_flyover(result: dict[str, Any]) -> None:
     if result["epnl_failure"]:
         console.print(printable(f"No EPNL: {result['epnl_failure']}."), highlight=False)
     loudest = max(history, key=lambda step: float(step["total_dba"]))
-    trip = result["model"]["noise"]["broadband"]["trip"]
     console.print(
         f"Loudest {loudest['time']:+.1f} s from overhead, heard over {loudest['distance']:.1f} m"
         f" from elevation {loudest['elevation_deg']:+.0f} deg of the rotor plane; half seconds,"
-        f" {len(history)} of them. Blades {TRIPPED[trip]}.",
+        f" {len(history)} of them. Blades {trip_words(result['model'])}.",
         highlight=False,
     )
     print_files(result)
