@@ -17,6 +17,7 @@ import numpy as np
 from propmdao.acoustics.broadband.self_noise import SelfNoise
 from propmdao.analysis.elastic.deflections import Deflection
 from propmdao.analysis.request import Request
+from propmdao.analysis.self_noise import MEASURED
 from propmdao.records.quantities import (
     ASKED,
     BROADBAND_LEVELS,
@@ -63,6 +64,9 @@ def schema() -> dict[str, Any]:
         "observers": _list(_observer()),
     }  # fmt: skip
     band = {"band": {"type": ["object", "null"], "description": "with --band"}}
+    ends = {"least": NUMBER, "largest": NUMBER, "measured": _list(NUMBER), "outside": NUMBER}
+    ranges = dict.fromkeys(MEASURED, _object(ends, ends))
+    band |= {"broadband_range": _object(ranges, ranges)}
     files = {name: {"description": f"with --{option}"}
              for name, option in (("sound", "wav"), ("figures", "figures"), ("vtk", "vtk"),
                                   ("tables", "out and --spectra"))}  # fmt: skip
@@ -87,7 +91,11 @@ def _observer() -> dict[str, Any]:
         "harmonics": _list(_object(harmonic, harmonic)),
         "third_octave": _list(_object(band, band)),
     }
-    broadband = {"broadband": _list(_object(band | mechanisms, band | mechanisms))}
+    weighted = {field.name: NUMBER for field in dataclasses.fields(SelfNoise)}
+    broadband = {
+        "broadband": _list(_object(band | mechanisms, band | mechanisms)),
+        "broadband_dba": _object(weighted, weighted),
+    }
     return _object(always | with_noise | broadband, always)
 
 

@@ -21,7 +21,7 @@ from propmdao.aerodynamics.solutions.marching.marched_loads import MarchedLoads
 from propmdao.aerodynamics.solutions.result import RotorLoads, TiltedLoads, failure
 from propmdao.analysis.elastic.deflections import Deflection
 from propmdao.analysis.request import Request
-from propmdao.analysis.self_noise import BANDS_HZ
+from propmdao.analysis.self_noise import BANDS_HZ, noise_range
 from propmdao.propeller.changes import Change
 from propmdao.propeller.description import Propeller
 from propmdao.propeller.identity import checksum
@@ -123,7 +123,8 @@ class Analysis:
             with their levels. At an incidence also azimuths, with force and moment of blade 1 at
             each; of a march its revolutions, with mean thrust [N] and torque [N m] and the change
             of the thrust since the one before, root of the mean square over the turn, over that of
-            the thrust, and its history: azimuth of blade 1, thrust and torque at each step.
+            the thrust, and its history: azimuth of blade 1, thrust and torque at each step. With
+            broadband noise broadband_range, of `noise_range`.
         """
         levels = jax.tree.map(np.asarray, _levels(self.tones))
         places = directions(self.listening.observers).rounded()
@@ -151,6 +152,7 @@ class Analysis:
             **{name: np.asarray(getattr(self.loads, name)).tolist() for name in HUB_LOADS},
             **self._around_the_turn(),
             **self._over_revolutions(),
+            **self._range_of_noise(),
             "observers": [
                 {
                     "elevation_deg": float(places.elevation_deg[i]),
@@ -161,6 +163,12 @@ class Analysis:
                 for i in range(len(self.listening.observers))
             ],
         }
+
+    def _range_of_noise(self) -> dict[str, Any]:
+        """How far the blade is outside of the measurements of broadband noise."""
+        if self.broadband is None:
+            return {}
+        return {"broadband_range": noise_range(self.loads, self.point.air)}
 
     def _around_the_turn(self) -> dict[str, Any]:
         """Loads of blade 1 at its azimuths, at an incidence."""
@@ -219,6 +227,9 @@ class Analysis:
             noise["spl"] = np.asarray(self.broadband.total)[i]
             center, bands = _bands_with_noise(self.tones, i, noise["spl"])
             result |= _levels_with_noise(self.tones, i, noise["spl"])
+            result["broadband_dba"] = {
+                name: float(level_dba(BANDS_HZ, noise[name])) for name in MECHANISMS
+            }
             in_bands = {name: np.asarray(level_db(power)) for name, power in noise.items()}
             result["broadband"] = [
                 {"frequency_hz": float(f)}

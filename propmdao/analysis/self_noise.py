@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import dataclasses
 from functools import partial
+from typing import Any
 
 import jax.numpy as jnp
+import numpy as np
 from jax import Array
 from jax.typing import ArrayLike
 
@@ -34,6 +36,9 @@ from propmdao.runtime.compilation import compiled
 
 #: Mid-band frequencies of the third octaves that are heard [Hz].
 BANDS_HZ = third_octave_centers(50.0, 20e3)
+#: Smallest and largest of NASA RP-1218: chords of 25.4 to 304.8 mm at 31.7 to 71.3 m/s, NACA 0012
+#: from 0 to 25.2 deg from zero lift.
+MEASURED = {"reynolds": (5.5e4, 1.5e6), "mach": (0.0, 0.21), "angle_deg": (0.0, 25.2)}
 
 
 @compiled
@@ -225,3 +230,41 @@ def self_noise(
         return noise
     inflow = rotor_inflow_noise(flow, n_blades, state, turbulence, observers, bands_hz, **azimuths)
     return dataclasses.replace(noise, inflow_turbulence=inflow)
+
+
+def noise_range(loads: RotorLoads | TiltedLoads, air: Air) -> dict[str, dict[str, Any]]:
+    """Compare the flow over the sections with the measurements of NASA RP-1218.
+
+    Parameters
+    ----------
+    loads : RotorLoads or TiltedLoads
+        Loads of the blade.
+    air : Air
+        The undisturbed air.
+
+    Returns
+    -------
+    dict of dict
+        By quantity of `MEASURED`: "least" and "largest" of all sections (and azimuths), "measured",
+        the two ends of the measurements, and "outside", the share of the span that lies beyond.
+    """
+    strips, states = loads.strips, loads.sections
+    speed = np.atleast_2d(np.asarray(states.relative_speed))
+    angle = np.degrees(np.abs(np.atleast_2d(states.lift_coefficient))) / (2.0 * np.pi)
+    values = {
+        "reynolds": speed * np.asarray(strips.chord) / float(air.kinematic_viscosity),
+        "mach": speed / float(air.sound_speed),
+        "angle_deg": angle,
+    }
+    width = np.broadcast_to(np.asarray(strips.width), speed.shape)
+    ranges = {}
+    for name, (low, high) in MEASURED.items():
+        value = values[name]
+        beyond = (value < low) | (value > high)
+        ranges[name] = {
+            "least": float(value.min()),
+            "largest": float(value.max()),
+            "measured": [low, high],
+            "outside": float(width[beyond].sum() / width.sum()),
+        }
+    return ranges

@@ -9,6 +9,7 @@ import numpy as np
 from rich.console import Console
 from rich.table import Table
 
+from propmdao.commands.broadband_report import print_mechanisms, trip_words
 from propmdao.commands.output.band_tables import print_bands
 from propmdao.commands.output.marches import march_lines
 from propmdao.commands.output.tables import level_cell, narrow_table, number_cell
@@ -17,7 +18,6 @@ from propmdao.runtime.terminal import plain_console, print_line, printable
 
 # What the numbers leave out stands below them, where it is read.
 INVISCID = "Inviscid lattice: no profile drag, so torque and power are low and eta is high."
-TRIPPED = {"none": "untripped", "light": "lightly tripped", "heavy": "heavily tripped"}
 _TWIST_AT = 0.75  # r/R at which an elastic blade's twist is told
 TONES_ONLY = "Tones only: with broadband noise (--broadband) it is louder, above all in dBA."
 
@@ -37,10 +37,11 @@ def print_analyses(analyses: Sequence[dict[str, Any]]) -> None:
     if any(analysis["observers"] for analysis in analyses):
         console.print(_levels(analyses))
         broadband = first["model"]["noise"]["broadband"]
-        trip = "" if broadband is None else f", blades {TRIPPED[broadband['trip']]}"
+        trip = "" if broadband is None else f", blades {trip_words(first['model'])}"
         console.print(f"Levels: {_around(first)}{trip}{_turbulence(first)}.", highlight=False)
         if broadband is None:
             console.print(TONES_ONLY)
+        print_mechanisms(console, analyses)
     else:
         console.print("No observers: --arc RADIUS ELEVATION... adds their noise.\n")
     for line in march_lines(analyses):
@@ -78,12 +79,10 @@ def print_flyover(result: dict[str, Any]) -> None:
     if result["epnl_failure"]:
         console.print(printable(f"No EPNL: {result['epnl_failure']}."), highlight=False)
     loudest = max(history, key=lambda step: float(step["total_dba"]))
-    trip = result["model"]["noise"]["broadband"]["trip"]
     console.print(
         f"Loudest {loudest['time']:+.1f} s from overhead, heard over {loudest['distance']:.1f} m"
         f" from elevation {loudest['elevation_deg']:+.0f} deg of the rotor plane; half seconds,"
-        f" {len(history)} of them. Blades {TRIPPED[trip]}"
-        f"{_turbulence(result)}.",
+        f" {len(history)} of them. Blades {trip_words(result['model'])}{_turbulence(result)}.",
         highlight=False,
     )
     print_files(result)

@@ -113,6 +113,27 @@ def test_energies_of_mechanisms_add_up_to_the_broadband_level(observer):
     assert together == pytest.approx(observer["oaspl_broadband_db"], abs=1e-6)
 
 
+def test_a_weighted_levels_of_mechanisms_add_up(observer):
+    assert list(observer["broadband_dba"]) == MECHANISMS
+    together = 10 * np.log10(energy(list(observer["broadband_dba"].values())))
+    assert together == pytest.approx(observer["oaspl_broadband_dba"], abs=1e-6)
+    loudest = max(observer["broadband_dba"], key=observer["broadband_dba"].get)
+    assert loudest == "suction_side"
+
+
+def test_sections_outside_of_the_measurements_are_told(cruise, strips):
+    found = cruise.to_dict()["broadband_range"]
+    section = strips.section
+    reynolds = np.asarray(section.speed * section.chord) * 1.225 / 1.789e-5
+    assert found["reynolds"]["least"] == pytest.approx(reynolds.min())
+    assert found["reynolds"]["largest"] == pytest.approx(reynolds.max())
+    low = np.asarray(section.span)[reynolds < 5.5e4].sum() / float(section.span.sum())
+    assert 0.1 < low < 0.9
+    assert found["reynolds"]["outside"] == pytest.approx(low)
+    assert found["mach"]["outside"] == found["angle_deg"]["outside"] == 0.0
+    assert found["mach"]["largest"] == pytest.approx(float(section.speed.max()) / 340.294)
+
+
 def test_third_octaves_hold_tones_and_broadband_noise(cruise, observer):
     level = 10 * np.log10(energy(column(observer["third_octave"], "spl_db")))
     assert level == pytest.approx(observer["oaspl_total_db"], abs=1e-6)
