@@ -1,7 +1,6 @@
 """OpenMDAO components, the group that connects them, and drivers."""
 
 from propmdao.components.acoustics_comp import AcousticsComp
-from propmdao.components.aerodynamics_comp import AerodynamicsComp
 from propmdao.components.broadband_comp import BroadbandComp
 from propmdao.components.designs.problem_in_words import design_problem, designed_blade
 from propmdao.components.drivers.differential_evolution_driver import DifferentialEvolutionDriver
@@ -9,10 +8,12 @@ from propmdao.components.drivers.evolution.constrained_search import Generation
 from propmdao.components.drivers.gradient_search import run_slsqp
 from propmdao.components.drivers.sweep_driver import SweepDriver
 from propmdao.components.geometry_comp import GeometryComp
+from propmdao.components.loads.aerodynamics_comp import AerodynamicsComp
+from propmdao.components.loads.marched_aerodynamics_comp import MarchedAerodynamicsComp
+from propmdao.components.loads.rotation_speed_comp import RotationSpeedComp
+from propmdao.components.loads.trimmed_aerodynamics_comp import TrimmedAerodynamicsComp
 from propmdao.components.noise_objective_comp import NoiseObjectiveComp
 from propmdao.components.propeller_group import PropellerGroup
-from propmdao.components.rotation_speed_comp import RotationSpeedComp
-from propmdao.components.trimmed_aerodynamics_comp import TrimmedAerodynamicsComp
 
 __all__ = [
     "AcousticsComp",
@@ -21,6 +22,7 @@ __all__ = [
     "DifferentialEvolutionDriver",
     "Generation",
     "GeometryComp",
+    "MarchedAerodynamicsComp",
     "NoiseObjectiveComp",
     "PropellerGroup",
     "RotationSpeedComp",

@@ -13,7 +13,6 @@ from propmdao.aerodynamics.sections.polars.propeller_polars import polars_for
 from propmdao.aerodynamics.solutions.period.flow import azimuths_for
 from propmdao.analysis.self_noise import section_layers
 from propmdao.components.acoustics_comp import AcousticsComp
-from propmdao.components.aerodynamics_comp import AerodynamicsComp, n_loads
 from propmdao.components.bases.nodes_comp import declare_num_nodes
 from propmdao.components.broadband_comp import BroadbandComp
 from propmdao.components.geometry_comp import (
@@ -30,8 +29,11 @@ from propmdao.components.inputs.model_options import (
 from propmdao.components.inputs.noise_inputs import declare_observers, declare_turbulent_inflow
 from propmdao.components.inputs.rotor_inputs import declare_polars, declare_tilted
 from propmdao.components.inputs.rpm_bounds import declare_bounds
-from propmdao.components.rotation_speed_comp import RotationSpeedComp
-from propmdao.components.trimmed_aerodynamics_comp import TrimmedAerodynamicsComp
+from propmdao.components.loads.aerodynamics_comp import AerodynamicsComp
+from propmdao.components.loads.marched_aerodynamics_comp import MarchedAerodynamicsComp
+from propmdao.components.loads.rotation_speed_comp import RotationSpeedComp
+from propmdao.components.loads.rotor_outputs import n_loads
+from propmdao.components.loads.trimmed_aerodynamics_comp import TrimmedAerodynamicsComp
 from propmdao.formats.propellers import load_propeller
 from propmdao.propeller.description import Propeller
 from propmdao.records.models import Model
@@ -55,7 +57,7 @@ class PropellerGroup(om.Group):
         Flight speed, 0 is hover, ``m/s``.
     incidence : float
         Angle between the shaft and the direction of flight, 0 is axial flight, 90 edgewise,
-        ``deg``, with `tilted`.
+        ``deg``, with `tilted` or `unsteady`.
     density : float
         Density of the air, ``kg/m**3``.
     sound_speed : float
@@ -87,7 +89,7 @@ design_lift_coefficient : (n_stations,) arrays
     hub_force, hub_moment : (3,) arrays
         Mean force and moment of all blades on the hub, about the rotor's centre, in axes that do
         not turn: +z is the shaft, flight is in the plane of +z and +x, ``N``, ``N*m``, with
-        `tilted`.
+        `tilted` or `unsteady`.
     spl_bpf_db, oaspl_db, oaspl_thickness_db, oaspl_loading_db, oaspl_dba : (n_observers,) arrays
         Levels of the tones, dB re 20 uPa, whether there is broadband noise or not.
     oaspl_broadband_db, oaspl_broadband_dba, oaspl_total_db, oaspl_total_dba : (n_observers,) arrays
@@ -112,6 +114,14 @@ design_lift_coefficient : (n_stations,) arrays
         Flight at an incidence, some hundred times as long as the steady lattice of axial flight,
         which is the default. All nodes are solved so, hover as well; the trim "two_point" is of
         axial flight alone.
+    unsteady : bool
+        Loads marched in time (`MarchedAerodynamicsComp`), at a given rotation speed: `trim` must be
+        "rpm". Derivatives are differences of marches and forward alone, so the problem is set up
+        with ``mode="fwd"``; backward there is an error.
+    revolutions, average, timestep_deg, start, wake_motion
+        With `unsteady`, what `propmdao.records.fidelity.Marching` says: revolutions of the march
+        (4) and of the mean (3), time step (3 deg), {"steady", "impulsive"} and
+        {"prescribed", "free"}.
     fidelity : Fidelity
         Numbers of panels, wake nodes, azimuths and harmonics.
     trim : str
@@ -165,8 +175,8 @@ design_lift_coefficient : (n_stations,) arrays
     ValueError
         If `observers` are no positions, `rpm_bounds` are not positive and rising, control points do
         not fit the blade, or `broadband` is asked for without observers, `trip` without
-        `broadband`, a transition in inviscid flow or beside `polars`, or `tilted` with
-        the trim "two_point".
+        `broadband`, a transition in inviscid flow or beside `polars`, `tilted` with the trim
+        "two_point", `unsteady` with a thrust, a march without `unsteady`, or one that cannot be.
     om.AnalysisError
         If a component has no result; with `num_nodes` the message has the node.
     """
@@ -202,6 +212,11 @@ design_lift_coefficient : (n_stations,) arrays
             raise ValueError("turbulent_inflow is heard as broadband noise: ask for broadband, too")
         if options["tilted"] and self._follows_thrust("two_point"):
             raise ValueError('trim_method "two_point" is of axial flight: tilted must be False')
+        if model.loads.unsteady is not None and options["trim"] != "rpm":
+            raise ValueError(
+                'a march in time needs rpm, not thrust: trim must be "rpm" with unsteady; a group'
+                " without unsteady finds the rpm"
+            )
         polars = None
         if model.loads.viscous:
             polars = options["polars"]
@@ -214,7 +229,7 @@ design_lift_coefficient : (n_stations,) arrays
             polars = polars or polars_for(propeller, transition=model.loads.transition)
         layers = section_layers(propeller, model)
         self._add_geometry(propeller, polars, layers)
-        self._add_loads(propeller, polars)
+        self._add_loads(propeller, polars, model)
         if is_heard:
             self._add_noise(propeller, model, layers)
 
@@ -245,7 +260,7 @@ design_lift_coefficient : (n_stations,) arrays
         for name in self._splined:
             self._take_from_spline("geometry", name)
 
-    def _add_loads(self, propeller: Propeller, polars: SectionPolars | None) -> None:
+    def _add_loads(self, propeller: Propeller, polars: SectionPolars | None, model: Model) -> None:
         """Rotation speed, thrust and power, and the loads where there are observers."""
         options = self.options
         rotor = {
@@ -255,15 +270,15 @@ design_lift_coefficient : (n_stations,) arrays
             **{name: options[name] for name in ("fidelity", "stall_delay", "wake")},
         }
         bounds = {"rpm_bounds": options["rpm_bounds"]}
-        solved = {
-            **rotor,
-            "tilted": options["tilted"],
-            "loads": options["observers"] is not None,  # they are the sources of noise
-        }
+        rotor_loads = {"loads": options["observers"] is not None}  # they are the sources of noise
+        solved = {**rotor, **rotor_loads, "tilted": options["tilted"]}
         if self._follows_thrust("two_point"):
             speed = RotationSpeedComp(**rotor, **bounds)
             self.add_subsystem("rotation_speed", speed, promotes=["*"])
-        if self._follows_thrust("solve"):
+        aerodynamics: om.ExplicitComponent
+        if (schedule := model.loads.unsteady) is not None:
+            aerodynamics = MarchedAerodynamicsComp(**rotor, **rotor_loads, march=schedule)
+        elif self._follows_thrust("solve"):
             aerodynamics = TrimmedAerodynamicsComp(**solved, **bounds)
         else:
             aerodynamics = AerodynamicsComp(**solved)
@@ -272,12 +287,17 @@ design_lift_coefficient : (n_stations,) arrays
     def _add_noise(self, propeller: Propeller, model: Model, layers: SectionLayers | None) -> None:
         """Tones, and broadband noise where it is asked for."""
         fidelity, n_blades = model.fidelity, int(propeller.n_blades)
-        tilted = self.options["tilted"]
+        n_azimuths = None
+        if (schedule := model.loads.unsteady) is not None:
+            n_azimuths = schedule.steps_per_turn
+        elif self.options["tilted"]:
+            n_azimuths = azimuths_for(fidelity.n_azimuths, n_blades)
         shared = {
             **{name: self.options[name] for name in ("num_nodes", "observers", "fidelity")},
-            "n_azimuths": azimuths_for(fidelity.n_azimuths, n_blades) if tilted else None,
+            "n_azimuths": n_azimuths,
         }
-        tones = AcousticsComp(n_blades=n_blades, n_loads=n_loads(fidelity, tilted), **shared)
+        count = n_loads(fidelity, n_azimuths is not None)
+        tones = AcousticsComp(n_blades=n_blades, n_loads=count, **shared)
         self.add_subsystem("acoustics", tones, promotes=["*"])
         if model.noise.broadband is None:
             return

@@ -21,6 +21,7 @@ OPENMDAO_NAMES = {
         "AerodynamicsComp",
         "BroadbandComp",
         "GeometryComp",
+        "MarchedAerodynamicsComp",
         "NoiseObjectiveComp",
         "RotationSpeedComp",
         "TrimmedAerodynamicsComp",

@@ -8,7 +8,7 @@ from typing import Any, get_args
 from openmdao.utils.options_dictionary import OptionsDictionary
 
 from propmdao.analysis.request import Request
-from propmdao.records.fidelity import Fidelity
+from propmdao.records.fidelity import Fidelity, Start, WakeMotion
 from propmdao.records.models import Layers, Model, Trip
 from propmdao.records.quantities import ASKED
 from propmdao.records.wake_law import WakeLaw
@@ -17,7 +17,17 @@ _RECORDS = {
     "fidelity": (Fidelity(), "numbers of panels, wake nodes and harmonics"),
     "wake": (WakeLaw(), "how the prescribed wake moves"),
 }
-_WORDS = {"trip": get_args(Trip), "layers": get_args(Layers)}
+_WORDS = {
+    "trip": get_args(Trip),
+    "layers": get_args(Layers),
+    "start": get_args(Start),
+    "wake_motion": get_args(WakeMotion),
+}
+_NUMBERS: dict[str, type | tuple[type, ...]] = {
+    "revolutions": int,
+    "average": int,
+    "timestep_deg": (int, float),
+}
 #: Options of the transition, numbers or None.
 TRANSITION_OPTIONS = ("n_crit", "trip_upper", "trip_lower")
 #: Options of `declare_model`.
@@ -26,6 +36,10 @@ MODEL_OPTIONS = (
     "viscous",
     "stall_delay",
     *TRANSITION_OPTIONS,
+    "unsteady",
+    *_NUMBERS,
+    "start",
+    "wake_motion",
     "broadband",
     "trip",
     "layers",
@@ -49,7 +63,9 @@ def declare_model(options: OptionsDictionary, names: Iterable[str] = MODEL_OPTIO
         else:
             quantity = ASKED[name]
             allowed: dict[str, Any] = {"types": bool}
-            if name in _WORDS:
+            if name in _NUMBERS:
+                allowed = {"types": _NUMBERS[name]}
+            elif name in _WORDS:
                 allowed = {"values": _WORDS[name]}
             elif name in TRANSITION_OPTIONS:
                 allowed = {"types": (int, float), "allow_none": True}

@@ -44,6 +44,7 @@ def systems(propeller, small, polars):
             {**geometry, "camber": "design_lift_coefficient"},
         ],
         "AerodynamicsComp": [*both, tilted],
+        "MarchedAerodynamicsComp": both,
         "TrimmedAerodynamicsComp": [*both, tilted],
         "RotationSpeedComp": both,
         "AcousticsComp": [{**noise, "n_blades": 2, "n_loads": 3, "n_azimuths": 8}],
@@ -54,6 +55,7 @@ def systems(propeller, small, polars):
             {**geometry, "trim": "rpm", "camber": "design_lift_coefficient"},
             {**geometry, "trim_method": "two_point", "viscous": False},
             {**geometry, "tilted": True},
+            {**geometry, "trim": "rpm", "unsteady": True},
         ],
     }
 

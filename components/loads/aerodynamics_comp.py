@@ -6,10 +6,8 @@ import dataclasses
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
-import jax.numpy as jnp
 import openmdao.api as om
 
-from propmdao.aerodynamics.coefficients import coefficients
 from propmdao.aerodynamics.solutions.edgewise import (
     edgewise_advance_ratio,
     is_slow,
@@ -18,7 +16,7 @@ from propmdao.aerodynamics.solutions.edgewise import (
 )
 from propmdao.aerodynamics.solutions.known_root import solved_at
 from propmdao.aerodynamics.solutions.period.flow import azimuths_for
-from propmdao.aerodynamics.solutions.result import RotorLoads, TiltedLoads, failure
+from propmdao.aerodynamics.solutions.result import failure
 from propmdao.aerodynamics.wakes.helical import wake_transport
 from propmdao.components.bases.array_function import Arrays, evaluate
 from propmdao.components.bases.nodes_comp import NodesComp
@@ -33,22 +31,8 @@ from propmdao.components.inputs.rotor_inputs import (
     declare_tilted,
     rotor_at,
 )
-from propmdao.records.fidelity import Fidelity
-from propmdao.records.quantities import HUB_LOADS, RESULTS
-from propmdao.records.states import RotorState
+from propmdao.components.loads.rotor_outputs import add_loads, add_performance, loads_outputs
 from propmdao.records.units import RAD_PER_S
-
-#: Outputs of every rotor, by their name in the table of quantities.
-PERFORMANCE = tuple(name for name in RESULTS if name not in ("converged", "failure"))
-
-
-def n_loads(fidelity: Fidelity, tilted: bool = False) -> int:
-    """Return the number of point forces on a blade: bound and chordwise segments, sections.
-
-    At an incidence there is one more on each ring, Bernoulli's unsteady term.
-    """
-    nc, ns = fidelity.n_chordwise, fidelity.n_spanwise
-    return nc * ns + nc * (ns + 1) + ns + nc * ns * tilted
 
 
 class AerodynamicsComp(NodesComp, RootComponent):
@@ -169,16 +153,11 @@ class AerodynamicsComp(NodesComp, RootComponent):
             self.constants, wake=wake_transport(self.options["wake"], longer(grid))
         )
         self._add_rotation_speed()
-        results = [RESULTS[name] for name in PERFORMANCE]
         if tilted:
             add_point_inputs(self, ["incidence_deg"])
-            results += HUB_LOADS.values()
-        for quantity in results:
-            shape = (len(quantity.axes),) if quantity.axes else ()
-            units, meaning = quantity.unit or None, quantity.meaning
-            self.add_point_output(quantity.variable, shape=shape, units=units, desc=meaning)
+        add_performance(self, tilted)
         if self.options["loads"]:
-            self._add_loads(fidelity)
+            add_loads(self, fidelity, self.static.n_azimuths)
         self.search, self.function = _steady, _at_root
         self.state, self.residual = "induced_velocity", "residual"
 
@@ -188,33 +167,6 @@ class AerodynamicsComp(NodesComp, RootComponent):
     def _search_constants(self, constants: RotorConstants) -> Any:
         """Constants of the search, from those of the function."""
         return constants
-
-    def _add_loads(self, fidelity: Fidelity) -> None:
-        nc, ns = fidelity.n_chordwise, fidelity.n_spanwise
-        n, n_azimuths = n_loads(fidelity, self.options["tilted"]), self.static.n_azimuths
-        around, azimuth = ((), ()) if n_azimuths is None else ((n_azimuths,), ("azimuth",))
-        self.axes = {
-            "circulation": (*azimuth, "chordwise panel", "strip"),
-            "load_position": ("load",),
-            "load_force": (*azimuth, "load"),
-            "section_speed": (*azimuth, "strip"),
-            "section_angle_of_attack": (*azimuth, "strip"),
-            "section_lift_coefficient": (*azimuth, "strip"),
-        }
-        self.add_point_output("circulation", shape=(*around, nc, ns), units="m**2/s")
-        self.add_point_output("load_position", shape=(n, 3), units="m")
-        self.add_point_output(
-            "load_force", shape=(*around, n, 3), units="N", desc="Force on the fluid."
-        )
-        self.add_point_output(
-            "section_speed", shape=(*around, ns), units="m/s", desc="Through the air."
-        )
-        self.add_point_output(
-            "section_angle_of_attack", shape=(*around, ns), units="rad", desc="From the chord line."
-        )
-        self.add_point_output(
-            "section_lift_coefficient", shape=(*around, ns), desc="In the middle of the strips."
-        )
 
     def found_at(self, inputs: Arrays) -> Mapping[str, Any]:
         if not self.options["tilted"]:
@@ -275,43 +227,3 @@ def _at_root(inputs: Arrays, constants: RotorConstants, static: RotorKind) -> Ar
     case = rotor_at(inputs, constants, static, inputs["rpm"][0] * RAD_PER_S)
     loads, residual = solved_at(static.solver, inputs["induced_velocity"][0], case)
     return {**loads_outputs(loads, case.state, inputs), "residual": residual[None]}
-
-
-def loads_outputs(loads: RotorLoads | TiltedLoads, state: RotorState, inputs: Arrays) -> Arrays:
-    """Outputs of the component.
-
-    Parameters
-    ----------
-    loads : RotorLoads or TiltedLoads
-        Loads of the rotor.
-    state : RotorState
-        How the rotor turns and flies.
-    inputs : dict of arrays
-        Inputs by name.
-
-    Returns
-    -------
-    dict of arrays
-        Outputs by name, and the rotation speed.
-    """
-    numbers = coefficients(loads.thrust, loads.torque, state, inputs["diameter"][0])
-    hub = HUB_LOADS if isinstance(loads, TiltedLoads) else ()
-    return {
-        **{name: getattr(loads, name) for name in hub},
-        "rpm": jnp.asarray(state.rotation_speed / RAD_PER_S)[None],
-        "thrust": loads.thrust[None],
-        "torque": loads.torque[None],
-        "shaft_power": (loads.torque * state.rotation_speed)[None],
-        "efficiency": numbers.eta[None],
-        "figure_of_merit": numbers.figure_of_merit[None],
-        "J": numbers.J[None],
-        "CT": numbers.CT[None],
-        "CQ": numbers.CQ[None],
-        "CP": numbers.CP[None],
-        "circulation": loads.circulation,
-        "load_position": loads.point_loads.position,
-        "load_force": loads.point_loads.force,
-        "section_speed": loads.sections.relative_speed,
-        "section_angle_of_attack": loads.sections.angle_of_attack,
-        "section_lift_coefficient": loads.sections.lift_coefficient,
-    }

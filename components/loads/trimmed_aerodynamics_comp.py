@@ -8,7 +8,6 @@ import openmdao.api as om
 
 from propmdao.aerodynamics.solutions.known_root import trimmed_at
 from propmdao.aerodynamics.trim import TrimError, require_reached, solve_for_thrust
-from propmdao.components.aerodynamics_comp import AerodynamicsComp, loads_outputs
 from propmdao.components.bases.array_function import Arrays
 from propmdao.components.inputs.rotor_inputs import RotorConstants, RotorKind, rotor_at
 from propmdao.components.inputs.rpm_bounds import (
@@ -17,6 +16,8 @@ from propmdao.components.inputs.rpm_bounds import (
     declare_bounds,
     fixed_bounds,
 )
+from propmdao.components.loads.aerodynamics_comp import AerodynamicsComp
+from propmdao.components.loads.rotor_outputs import loads_outputs
 from propmdao.records.units import RAD_PER_S
 
 
