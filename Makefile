@@ -64,7 +64,10 @@ notebooks: $(VENV)/docs
 clean:
 	rm -rf $(VENV) build dist *.egg-info .pytest_cache .mypy_cache .ruff_cache .benchmarks
 
-# Stamp files: a second call finds the work done. pyproject.toml holds what has to be installed.
+# Stamp files: a second call finds the work done. pyproject.toml holds what has to be installed,
+# propmdao/__init__.py the version, which the installation keeps.
+INSTALLED_FROM := pyproject.toml propmdao/__init__.py
+
 $(VENV)/created:
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || \
 	  { echo "propmdao needs Python 3.11 or newer; $(PYTHON) is not that: make $(MAKECMDGOALS) PYTHON=..." >&2; exit 1; }
@@ -73,14 +76,14 @@ $(VENV)/created:
 	$(PYTHON) -m venv $(VENV)
 	@touch $@
 
-$(VENV)/installed: $(VENV)/created pyproject.toml
+$(VENV)/installed: $(VENV)/created $(INSTALLED_FROM)
 	$(PIP) install --editable '.[plots]'
 	@touch $@
 
-$(VENV)/dev: $(VENV)/created pyproject.toml
+$(VENV)/dev: $(VENV)/created $(INSTALLED_FROM)
 	$(PIP) install --editable '.[plots,test,lint]'
 	@touch $(VENV)/installed $@
 
-$(VENV)/docs: $(VENV)/created pyproject.toml
+$(VENV)/docs: $(VENV)/created $(INSTALLED_FROM)
 	$(PIP) install --editable '.[plots,docs]'
 	@touch $(VENV)/installed $@
