@@ -287,7 +287,8 @@ class Model:
             Model whose transition has no None, and whose broadband noise follows it.
         """
         transition, noise = self.loads.transition.completed(described), self.noise
-        if (broadband := noise.broadband) is not None:
-            noise = dataclasses.replace(noise, broadband=broadband.completed(transition, tip))
+        if noise.broadband is not None:
+            broadband = noise.broadband.completed(transition, tip)
+            noise = dataclasses.replace(noise, broadband=broadband)
         loads = dataclasses.replace(self.loads, transition=transition)
         return dataclasses.replace(self, loads=loads, noise=noise)

@@ -198,14 +198,12 @@ def _broadband(
     # frequencies are those of flying along times Doppler's factor.
     pose = poses(track, times)
     beside = np.einsum("tij,ti->tj", np.asarray(pose.rotation), place - np.asarray(pose.origin))
-    propeller = analysis.changed_propeller
+    propeller, state = analysis.changed_propeller, analysis.state
     n_blades = int(propeller.n_blades)
     model = _with_noise(analysis.model, propeller).noise.broadband
     assert model is not None
-    powers = [
-        self_noise(flow, n_blades, analysis.state, position[None], model, BANDS_HZ / factor).total[
-            0
-        ]
+    noises = (
+        self_noise(flow, n_blades, state, position[None], model, BANDS_HZ / factor)
         for position, factor in zip(beside, doppler, strict=True)
-    ]
-    return np.array(powers)
+    )
+    return np.array([noise.total[0] for noise in noises])
