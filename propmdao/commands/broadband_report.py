@@ -5,11 +5,10 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
-from rich import box
 from rich.console import Console
-from rich.table import Table
 
-_SILENT = -199.0
+from propmdao.commands.output.tables import level_cell, narrow_table, number_cell
+
 _HEADINGS = {
     "pressure_side": "pressure\nside",
     "suction_side": "suction\nside",
@@ -71,15 +70,15 @@ def print_mechanisms(console: Console, analyses: Sequence[dict[str, Any]]) -> No
     ]
     if not places:
         return
-    table = Table(box=box.SIMPLE, pad_edge=False, collapse_padding=True)
+    table = narrow_table()
     for heading in ("rpm", "elev.\ndeg", *_HEADINGS.values()):
         table.add_column(heading, justify="right")
     loudest = []
     for rpm, observer in places:
         levels = observer["broadband_dba"]
         loudest.append(max(levels, key=levels.__getitem__))
-        cells = (f"{levels[name]:.1f}" if levels[name] > _SILENT else "-" for name in _HEADINGS)
-        table.add_row(f"{rpm:.1f}", f"{observer['elevation_deg'] + 0.0:.4g}", *cells)
+        place = number_cell(observer["elevation_deg"], ".4g")
+        table.add_row(f"{rpm:.1f}", place, *(level_cell(levels[name]) for name in _HEADINGS))
     console.print("Broadband noise by mechanism, dBA:")
     console.print(table)
     first = max(dict.fromkeys(loudest), key=loudest.count)

@@ -234,7 +234,7 @@ _ASKED = (
         "trip", "", "tripping of the boundary layers in broadband noise", SELF_NOISE, "none",
         per_node=False, option="--trip", placeholder="{none,light,heavy}",
         help="tripped boundary layers in the broadband noise alone, default as in the polars:"
-        " none. Untripped ones shed vortices, which rule at the small angles of cruise; a rough or"
+        " none. Untripped ones shed vortices where they separate laminar; a rough or"
         " dusty blade sheds none",
     ),
     Quantity(

@@ -336,7 +336,9 @@ def test_help_explains_every_option(capsys: pytest.CaptureFixture[str]) -> None:
     options += " --unsteady --revolutions --average --timestep --start --wake"
     options += " --gust --gust-shape --gust-start --gust-length"
     options += " --arc --point --circle --hemisphere --grid --ground --level --absorption"
-    options += " --broadband --trip --band --wav --seconds --full-scale --figures --figure-at"
+    options += (
+        " --broadband --trip --layers --band --wav --seconds --full-scale --figures --figure-at"
+    )
     options += " --figure-dba --vtk --json --out --spectra --quiet"
     for option in options.split():
         assert option in text

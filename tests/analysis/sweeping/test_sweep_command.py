@@ -136,7 +136,7 @@ def test_help_explains_every_option(capsys: pytest.CaptureFixture[str]) -> None:
     text = capsys.readouterr().out
     for option in (
         "--rpm --thrust --speed --rho --twist-offset --chord-factor --diameter --blades"
-        " --points --samples --seed --inviscid --workers --out --broadband --trip"
+        " --points --samples --seed --inviscid --workers --out --broadband --trip --layers"
         " --n-crit --trip-upper --trip-lower"
         " --arc --point --circle --hemisphere --grid --ground --level --absorption"
     ).split():
