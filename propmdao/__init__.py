@@ -43,7 +43,7 @@ _HOMES = {
     "hemisphere": "acoustics.kinematics.observers",
     "load_propeller": "formats.propellers",
     "point": "acoustics.kinematics.observers",
-    "sweep": "analysis.sweeps",
+    "sweep": "analysis.sweeping.sweeps",
 }
 
 __all__ = [
@@ -87,7 +87,7 @@ if TYPE_CHECKING:  # what editors and type checkers see
     from propmdao.analysis.flights.flyovers import fly_over as fly_over
     from propmdao.analysis.results import Analysis as Analysis
     from propmdao.analysis.single_point import analyze as analyze
-    from propmdao.analysis.sweeps import sweep as sweep
+    from propmdao.analysis.sweeping.sweeps import sweep as sweep
     from propmdao.analysis.uncertainty import Uncertainties as Uncertainties
     from propmdao.analysis.uncertainty import band as band
     from propmdao.formats.propellers import load_propeller as load_propeller

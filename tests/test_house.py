@@ -168,3 +168,20 @@ def _roots(tree: ast.Module) -> list[str]:
         elif isinstance(node, ast.ImportFrom):
             names.append(node.module or "")
     return [name.split(".")[0] for name in names]
+
+
+def test_linear_systems_are_solved_in_one_place(modules):
+    """Batches of JAX's own functions can wait for each other for ever, see `linear_algebra`."""
+    harmless = {"norm", "cross", "matrix_norm", "vector_norm"}
+    found = [
+        f"{name}: {ast.unparse(node)}"
+        for name, tree in modules.items()
+        if name != "propmdao.runtime.linear_algebra"
+        for node in ast.walk(tree)
+        if isinstance(node, ast.Attribute)
+        and ast.unparse(node.value) in {"jnp.linalg", "jax.numpy.linalg", "jax.lax.linalg"}
+        and node.attr not in harmless
+        or isinstance(node, ast.ImportFrom)
+        and (node.module or "").startswith(("jax.scipy", "jax.numpy.linalg", "jax.lax.linalg"))
+    ]
+    assert not found

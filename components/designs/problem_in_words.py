@@ -110,7 +110,9 @@ def design_problem(
     prob.model.add_subsystem("propeller", group, promotes=["*"])
     for word in responses:
         _add_response(prob.model, word, points, n_observers, propeller)
-    _set_points(prob.model, points, bool(noisy or options.get("viscous", True)))
+    # Tones, polars and the Mach number of the tip take the speed of sound in.
+    takes_sound_speed = noisy or options.get("viscous", True) or "tip-mach" in responses
+    _set_points(prob.model, points, bool(takes_sound_speed))
     described = blade_distributions(propeller, "camber_over_chord")
     for word, range_ in ranges.items():
         _add_variable(prob.model, word, range_, radii, propeller, described)
@@ -371,8 +373,7 @@ def _finish(
         return _DB if response.is_noise else float(np.abs(value).max())
 
     for word, limit in limits.items():
-        response = RESPONSES[word]
-        name = _name(word, 1 if not response.is_noise else n_points)
+        response, name = RESPONSES[word], _name(word, 1)  # a limit holds at each operating point
         value = np.array(prob.get_val(name, units=response.unit or None))
         upper = value if limit == BASELINE else np.full(value.shape, float(limit))
         prob.model.add_constraint(

@@ -110,11 +110,7 @@ def write_sound(
         If there are more than `MAX_CHANNELS` observers, a value is out of range, or as in
         `pressure_record` and `write_wav`.
     """
-    # A record holds one blade passage at least, which may be long; a rotor at rest has none.
-    passage_hz = float(np.asarray(analysis.tones.frequency_hz)[0])
-    longer = max(duration, 1.0 / passage_hz if passage_hz > 0.0 else 0.0)
-    require_sound(len(analysis.listening.observers), longer, full_scale)
-    record = pressure_record(analysis, duration)
+    record = _channels(analysis, duration, full_scale)
     if full_scale is None:
         full_scale = common_full_scale(record)
     return write_wav(path, record, full_scale, SAMPLE_RATE)
@@ -140,7 +136,17 @@ def write_sounds(files: Mapping[Path, Analysis], duration: float) -> list[Record
     ValueError
         The same as from `write_sound`.
     """
-    full_scale = common_full_scale(
-        *(pressure_record(analysis, duration) for analysis in files.values())
-    )
-    return [write_sound(file, analysis, duration, full_scale) for file, analysis in files.items()]
+    records = {file: _channels(analysis, duration) for file, analysis in files.items()}
+    full_scale = common_full_scale(*records.values())
+    return [write_wav(file, record, full_scale, SAMPLE_RATE) for file, record in records.items()]
+
+
+def _channels(
+    analysis: Analysis, duration: float, full_scale: float | None = None
+) -> npt.NDArray[np.float64]:
+    """Record of a file that can be, (n_observers, n_times) [Pa]."""
+    # A record holds one blade passage at least, which may be long; a rotor at rest has none.
+    passage_hz = float(np.asarray(analysis.tones.frequency_hz)[0])
+    longer = max(duration, 1.0 / passage_hz if passage_hz > 0.0 else 0.0)
+    require_sound(len(analysis.listening.observers), longer, full_scale)
+    return pressure_record(analysis, duration)

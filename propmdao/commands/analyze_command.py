@@ -29,7 +29,8 @@ from propmdao.commands.output.output_files import (
     require_output_folder,
     save_figures,
 )
-from propmdao.commands.output.warning_lines import progress_line, warning_lines
+from propmdao.commands.output.progress import progress_line
+from propmdao.commands.output.warning_lines import warning_lines
 from propmdao.formats.endings import POLAR_READERS, described
 from propmdao.records.quantities import ASKED
 
@@ -191,7 +192,6 @@ def add_analyze(commands: argparse._SubParsersAction[Any]) -> None:
         action="store_true",
         help="directivity and map of a hemisphere A-weighted",
     )
-
     group.add_argument(
         "--vtk",
         type=Path,
@@ -282,9 +282,7 @@ def _check(options: argparse.Namespace) -> None:
         ("--figures", options.figures),
         ("--vtk", options.vtk),
     ):
-        if value is None:
-            continue
-        if _is_list(options.rpm):
+        if value is not None and _is_list(options.rpm):
             raise ValueError(f"{option} is of one operating point: give one --rpm")
     for option, value in (("--wav", options.wav), ("--spectra", options.spectra)):
         if value is not None and not placed:

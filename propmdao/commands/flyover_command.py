@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-import csv
 import dataclasses
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -23,9 +22,9 @@ from propmdao.commands.output.output_files import (
     require_output,
     require_output_folder,
     save_figures,
+    write_csv,
 )
 from propmdao.commands.output.warning_lines import warning_lines
-from propmdao.runtime.output_files import replacing
 
 if TYPE_CHECKING:
     from propmdao.analysis.flights.flyover_results import Flyover
@@ -173,13 +172,7 @@ def _write(options: argparse.Namespace, flyover: Flyover, nearest: float) -> dic
     written: dict[str, Any] = {}
     if options.out is not None:
         rows = flyover.to_dict()["history"]
-        with (
-            replacing(options.out) as file,
-            file.open("w", newline="", encoding="utf-8") as stream,
-        ):
-            writer = csv.DictWriter(stream, rows[0])
-            writer.writeheader()
-            writer.writerows({key: f"{x:.4f}" for key, x in row.items()} for row in rows)
+        write_csv(options.out, rows[0], ([f"{row[key]:.4f}" for key in rows[0]] for row in rows))
     if flyover.pressure is not None:
         from propmdao.acoustics.sounds.recordings import common_full_scale
         from propmdao.formats.wav import write_wav

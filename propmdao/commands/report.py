@@ -1,126 +1,24 @@
-"""Tables for people: the catalogue, operating points, noise."""
+"""Tables for people: operating points and noise."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
-from rich import box
 from rich.console import Console
 from rich.table import Table
 
-from propmdao.propeller.description import Propeller
+from propmdao.commands.output.band_tables import print_bands
+from propmdao.commands.output.tables import level_cell, narrow_table, number_cell
 from propmdao.records.listening import Surroundings
 from propmdao.runtime.terminal import plain_console, print_line, printable
 
 # What the numbers leave out stands below them, where it is read.
 INVISCID = "Inviscid lattice: no profile drag, so torque and power are low and eta is high."
 TRIPPED = {"none": "untripped", "light": "lightly tripped", "heavy": "heavily tripped"}
-BAND = (
-    "First line: with the input at its upper end, second: at its lower end. Band: root of the sum"
-    " of their squares, what raises a number apart from what lowers it."
-)
 _TWIST_AT = 0.75  # r/R at which an elastic blade's twist is told
 TONES_ONLY = "Tones only: with broadband noise (--broadband) it is louder, above all in dBA."
-
-# Results of a band: label, formats of the number and of its changes.
-_BAND_ROWS = {
-    "rpm": ("rpm", ".1f", "+.1f"),
-    "thrust": ("thrust, N", "#.4g", "+.3g"),
-    "shaft_power": ("power, W", "#.4g", "+.3g"),
-}
-
-
-def print_catalog(propellers: Iterable[Propeller]) -> None:
-    """Print a table of propellers: name, diameter, number of blades, airfoils.
-
-    Parameters
-    ----------
-    propellers : iterable of Propeller
-        One line each.
-    """
-    table = _table()
-    table.add_column("name", no_wrap=True)
-    table.add_column("diameter m", justify="right")
-    table.add_column("blades", justify="right")
-    table.add_column("airfoils, hub to tip")
-    for propeller in propellers:
-        airfoils = printable(", ".join(name for _, name in propeller.airfoils))
-        table.add_row(
-            printable(propeller.name),
-            f"{propeller.diameter:.4g}",
-            str(propeller.n_blades),
-            airfoils,
-        )
-    console = plain_console()
-    console.print(table)
-    console.print("Where the numbers come from, and what is assumed: propmdao list --json")
-
-
-def print_propeller(described: dict[str, Any]) -> None:
-    """Print the stations of a propeller, its sections and its sources.
-
-    Parameters
-    ----------
-    described : dict
-        With the keys of ``propmdao show --json``.
-    """
-    console = plain_console()
-    console.print(
-        printable(
-            f"{described['name']}: {described['n_blades']} blades, diameter"
-            f" {described['diameter']:.4g} m, checksum {described['checksum']}"
-        ),
-        highlight=False,
-    )
-    millimetres = 500.0 * described["diameter"]
-    columns = {
-        "r/R": (described["r_over_R"], 1.0, ".3f"),
-        "radius\nmm": (described["r_over_R"], millimetres, ".2f"),
-        "chord\nmm": (described["c_over_R"], millimetres, ".2f"),
-        "blade\nangle\ndeg": (described["beta_deg"], 1.0, ".2f"),
-        "thick-\nness\n%": (described["thickness_over_chord"], 100.0, ".2f"),
-        "camber\n%": (described["camber_over_chord"], 100.0, ".2f"),
-        "sweep\nmm": (described["sweep_over_R"], millimetres, ".2f"),
-        "rake\nmm": (described["rake_over_R"], millimetres, ".2f"),
-    }
-    table = _table()
-    for heading in columns:
-        table.add_column(heading, justify="right")
-    for station in range(len(described["r_over_R"])):
-        table.add_row(*(_format(factor * v[station], form) for v, factor, form in columns.values()))
-    console.print(table)
-    for r, airfoil in described["airfoils"]:
-        print_line(f"r/R {r:g}: {airfoil}, polars: {described['polars'][airfoil]}")
-    if described["source"]:
-        print_line(f"Source: {described['source']}")
-
-
-def print_installation(installation: dict[str, Any]) -> None:
-    """Print what an installation has.
-
-    Parameters
-    ----------
-    installation : dict
-        With the keys of ``propmdao doctor --json``.
-    """
-    for name, version in installation["versions"].items():
-        print_line(f"{name} {version}")
-    print_line(f"{installation['platform']}, {installation['processor cores']} processor cores")
-    print_line(f"devices: {', '.join(installation['devices'])}")
-    for name in ("compiled code", "polars"):
-        cache = installation[name]
-        where = cache["folder"] or "nowhere: no folder can be written"
-        print_line(f"cache of {name}: {where}, {cache['files']} files, {cache['megabytes']} MB")
-    for name, is_there in installation["extras"].items():
-        missing = f"missing: pip install 'propmdao[{name}]'"
-        print_line(f"extra {name}: {'installed' if is_there else missing}")
-    check = installation["check"]
-    print_line(
-        f"check: {check['propeller']} at {check['rpm']:g} rpm on coarse meshes, thrust"
-        f" {check['thrust']:.3f} N, {check['seconds']:g} s with imports and compilation"
-    )
 
 
 def print_analyses(analyses: Sequence[dict[str, Any]]) -> None:
@@ -145,7 +43,7 @@ def print_analyses(analyses: Sequence[dict[str, Any]]) -> None:
     else:
         console.print("No observers: --arc RADIUS ELEVATION... adds their noise.\n")
     print_doubts(analyses)
-    _print_bands(console, analyses)
+    print_bands(console, analyses)
     print_files(first)
 
 
@@ -166,11 +64,11 @@ def print_flyover(result: dict[str, Any]) -> None:
         f" {flight['height']:g} m above the ground",
     )
     print_doubts([result])
-    table = _table()
+    table = narrow_table()
     for heading in ("", "loudest\ndBA", "SEL\ndBA", "EPNL\nEPNdB"):
         table.add_column(heading, justify="right" if heading else "left")
     for part, level in result["levels"].items():
-        shown = [_level(level[key], ".1f") for key in ("lamax_dba", "sel_dba")]
+        shown = [level_cell(level[key], ".1f") for key in ("lamax_dba", "sel_dba")]
         epnl = result["epnl"] if part == "total" else None
         table.add_row(part, *shown, "" if epnl is None else f"{epnl:.1f}")
     console.print(table)
@@ -279,76 +177,10 @@ def print_files(result: dict[str, Any]) -> None:
         print_line(" ".join(["For ParaView:", *result["vtk"]]))
 
 
-def _print_bands(console: Console, analyses: Sequence[dict[str, Any]]) -> None:
-    """Print what inputs that are not known for sure do to the numbers, where it was asked."""
-    bands = [analysis for analysis in analyses if analysis.get("band")]
-    for analysis in bands:
-        console.print(f"Band at {analysis['rpm']:.1f} rpm: changes of the numbers", highlight=False)
-        console.print(_band(analysis))
-        for effect in analysis["band"]["effects"]:
-            if effect["left_out"]:
-                text = f"The band lacks {effect['name']}: {effect['left_out']}."
-                console.print(printable(text), highlight=False)
-    if bands:
-        console.print(BAND)
-
-
-def _band(analysis: dict[str, Any]) -> Table:
-    """Changes of every number: by each input, at its upper and its lower end, and by all."""
-    band, observers = analysis["band"], analysis["observers"]
-    rows, numbers = [], dict[str, Any]()
-    for key in band["above"]:
-        if key == "spl_bpf_db":
-            rows += [(f"BPF dB, {place}", ".1f", "+.2f") for place in _places(observers)]
-            numbers[key] = [observer[key] for observer in observers]
-        else:
-            rows.append(_BAND_ROWS[key])
-            numbers[key] = analysis[key]
-    columns, table = [], _table()
-    for heading in ("", "value"):
-        table.add_column(heading, justify="right" if heading else "left", no_wrap=True)
-    for effect in band["effects"]:
-        low, high = effect["ends"]
-        # Word below word, so that the table fits a terminal of 80 characters.
-        words = [*effect["name"].split(), f"{low:g} to", f"{high:g} {effect['unit']}".rstrip()]
-        table.add_column("\n".join(words), justify="right", no_wrap=True)
-        columns.append((effect["changes"][1], effect["changes"][0]))
-    table.add_column("band", justify="right")
-    columns.append((band["above"], band["below"]))
-    flat = [tuple(None if end is None else _flat(end) for end in ends) for ends in columns]
-    for k, ((label, form, change), value) in enumerate(zip(rows, _flat(numbers), strict=True)):
-        cells = (
-            "\n".join("-" if end is None else _format(end[k], change) for end in ends)
-            for ends in flat
-        )
-        table.add_row(label, _format(value, form), *cells)
-    return table
-
-
-def _flat(values: dict[str, Any]) -> list[float]:
-    """Numbers of a band's results in one list, those of the observers one after the other."""
-    return [
-        number
-        for value in values.values()
-        for number in (value if isinstance(value, list) else [value])
-    ]
-
-
-def _places(observers: Sequence[dict[str, Any]]) -> list[str]:
-    """What tells observers from each other in few characters."""
-    keys = {"elevation_deg": "{:+.4g} deg", "azimuth_deg": "az. {:.4g}", "radius": "{:.4g} m"}
-    differ = [
-        key
-        for key in keys
-        if key == "elevation_deg" or len({observer[key] for observer in observers}) > 1
-    ]
-    return [", ".join(keys[key].format(observer[key]) for key in differ) for observer in observers]
-
-
 def _operating_points(analyses: Sequence[dict[str, Any]]) -> Table:
     gives = analyses[0]["deflection"] is not None
     # With the twist of an elastic blade there are nine columns, which have to fit a terminal of 80.
-    table = _table(padding=0 if gives else 1)
+    table = narrow_table(padding=0 if gives else 1)
     columns = {
         "rpm": ("rpm", ".1f"),
         "J": ("J", ".4f"),
@@ -368,7 +200,7 @@ def _operating_points(analyses: Sequence[dict[str, Any]]) -> Table:
     if gives:
         table.add_column(f"twist at\n{_TWIST_AT} R\ndeg", justify="right")
     for analysis in analyses:
-        row = [_format(analysis[key], form) for key, (_, form) in columns.items()]
+        row = [number_cell(analysis[key], form) for key, (_, form) in columns.items()]
         if gives:
             deflection = analysis["deflection"]
             twist = np.interp(_TWIST_AT, deflection["r_over_R"], deflection["twist_deg"])
@@ -396,7 +228,7 @@ def _levels(analyses: Sequence[dict[str, Any]]) -> Table:
         del columns["azimuth_deg"]
     columns = {key: column for key, column in columns.items() if key in observers[0]}
     # With broadband noise there are up to twelve columns, which have to fit a terminal of 80.
-    table = _table(padding=1 if len(columns) < 9 else 0)
+    table = narrow_table(padding=1 if len(columns) < 9 else 0)
     table.add_column("rpm", justify="right")
     for heading, _ in columns.values():
         table.add_column(heading, justify="right")
@@ -404,20 +236,6 @@ def _levels(analyses: Sequence[dict[str, Any]]) -> Table:
         for observer in analysis["observers"]:
             table.add_row(
                 f"{analysis['rpm']:.1f}",
-                *(_level(observer[key], form) for key, (_, form) in columns.items()),
+                *(level_cell(observer[key], form) for key, (_, form) in columns.items()),
             )
     return table
-
-
-def _table(padding: int = 1) -> Table:
-    return Table(box=box.SIMPLE, pad_edge=False, collapse_padding=True, padding=(0, padding))
-
-
-def _level(value: float, form: str) -> str:
-    # Silence is -200 dB.
-    return _format(value, form) if value > -199.0 else "-"
-
-
-def _format(value: float, form: str) -> str:
-    # A zero that has a sign is still zero.
-    return format(value + 0.0, form)

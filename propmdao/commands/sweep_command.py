@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 import argparse
-import csv
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from propmdao.commands.observer_options import (
     add_observers,
@@ -31,9 +30,6 @@ from propmdao.commands.output.warning_lines import warning_lines
 from propmdao.records.quantities import VARIABLES
 from propmdao.records.units import Range
 from propmdao.runtime.terminal import print_line
-
-if TYPE_CHECKING:
-    from propmdao.propeller.description import Propeller
 
 SWEEP_DESCRIPTION = """\
 A propeller at many points into a table, a row per point: a map of thrust, torque and noise over
@@ -133,8 +129,9 @@ def _sweep(options: argparse.Namespace) -> None:
     asked = {name: getattr(options, name) for name in ASKED_OF_ALL} | air_of(options)
     points = _points(options)
     listening = listening_of(options, _incidence(options, points))
+    asked |= {"observers": listening.observers, "surroundings": listening.surroundings}
     # Slow to import, so only once the arguments are known to be good.
-    from propmdao.analysis.sweeps import sweep
+    from propmdao.analysis.sweeping.sweeps import sweep, swept_rows
     from propmdao.formats.propellers import load_propeller
     from propmdao.runtime.worker_processes import WorkerLostError
 
@@ -148,15 +145,7 @@ def _sweep(options: argparse.Namespace) -> None:
     with warning_lines("sweep"):
         propeller = load_propeller(options.propeller)
     try:
-        n_new, failures = sweep(
-            propeller,
-            points,
-            options.out,
-            n_workers=options.workers,
-            observers=listening.observers,
-            surroundings=listening.surroundings,
-            **asked,
-        )
+        n_new, failures = sweep(propeller, points, options.out, n_workers=options.workers, **asked)
     except WorkerLostError as error:
         raise ValueError(f"{error} The rows so far are kept: run again to go on") from error
     counts = f"points: {len(points)}, {n_new} new, {len(failures)} failed"
@@ -164,34 +153,18 @@ def _sweep(options: argparse.Namespace) -> None:
         raise ValueError(f"{counts}, the first with: {failures[0]}")
     print_line(f"{counts}; {options.out}")
     if options.figures is not None:
-        print_line(" ".join(["Figures:", *_draw(options, propeller, points, columns)]))
+        from propmdao.commands.output.results_folder import write_record
+        from propmdao.figures.rotor.sweep_maps import SHOWN, sweep_maps
+
+        write_record(options.figures, options, {propeller.name: propeller}, points=points)
+        rows = [
+            {name: float(row[name]) for name in (*columns, *SHOWN)}
+            for row in swept_rows(propeller, points, options.out, **asked)
+        ]
+        figures = {"sweep": sweep_maps(rows, columns, propeller.name)}
+        print_line(" ".join(["Figures:", *save_figures(options.figures, figures)]))
     for reason in list(dict.fromkeys(failures))[:3]:
         print_line(f"  failed: {reason}")
-
-
-def _draw(
-    options: argparse.Namespace,
-    propeller: Propeller,
-    points: list[dict[str, float]],
-    columns: tuple[str, ...],
-) -> list[str]:
-    """Draw the points of this sweep that its table has results of."""
-    from propmdao.commands.output.results_folder import write_record
-    from propmdao.figures.rotor.sweep_maps import SHOWN, sweep_maps
-    from propmdao.formats.result_table import STATUS, table_files
-    from propmdao.propeller.identity import checksum
-
-    write_record(options.figures, options, {propeller.name: propeller}, points=points)
-    asked = {tuple(point[column] for column in columns) for point in points}
-    file, _ = table_files(options.out)
-    rows = []
-    with file.open(newline="", encoding="utf-8") as stream:
-        for row in csv.DictReader(stream):
-            if row[STATUS] != "ok" or row["blade"] != checksum(propeller):
-                continue
-            if tuple(float(row[column]) for column in columns) in asked:
-                rows.append({name: float(row[name]) for name in (*columns, *SHOWN)})
-    return save_figures(options.figures, {"sweep": sweep_maps(rows, columns, propeller.name)})
 
 
 def _incidence(options: argparse.Namespace, points: Sequence[Mapping[str, float]]) -> float:
@@ -206,7 +179,7 @@ def _incidence(options: argparse.Namespace, points: Sequence[Mapping[str, float]
 
 
 def _points(options: argparse.Namespace) -> list[dict[str, float]]:
-    from propmdao.analysis.sweeps import MOST_POINTS, grid, latin_hypercube, read_points
+    from propmdao.analysis.sweeping.points import MOST_POINTS, grid, latin_hypercube, read_points
 
     typed = {variable: getattr(options, variable) for variable in VARIABLES}
     typed = {variable: texts for variable, texts in typed.items() if texts}

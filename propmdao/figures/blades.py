@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import numpy.typing as npt
 
-from propmdao.figures.style import BLADE_COLORS, GRID, line_styles, literal, page
+from propmdao.figures.style import BLADE_COLORS, GRID, headline, line_styles, literal, page
 from propmdao.geometry.blade import Blade, span_interpolation
 from propmdao.propeller.airfoils.airfoil import CHORD_FRACTION
 from propmdao.propeller.description import Propeller
@@ -53,7 +53,7 @@ def blade_comparison(
     spans[-1].set_xlabel("r/R")
     sections[-1].set_xlabel("x/c")
     figure.align_ylabels(spans)
-    figure.suptitle(literal(title), x=0.02, ha="left", fontsize="medium")
+    headline(figure, title)
     figure.legend(*spans[0].get_legend_handles_labels(), loc="outside upper center", ncols=4)
     return figure
 

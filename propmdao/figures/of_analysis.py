@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -79,7 +79,7 @@ def analysis_figures(
     for kind, members in observer_groups(analysis.listening):
         here = {source: level[members] for source, level in levels.items()}
         if kind == "arc":
-            name, figure = "directivity", _arc(positions[members], here, label, title)
+            name, figure = "directivity", arc_diagram(positions[members], here, label, title)
         elif kind == "hemisphere":
             name, level = "hemisphere", here["total"]
             figure = _hemisphere(analysis.listening, members, level, label, title)
@@ -198,15 +198,34 @@ def observer_groups(listening: Listening) -> Iterator[tuple[str, slice]]:
         start += group.n
 
 
-def _arc(positions: Floats, levels: dict[str, Floats], label: str, title: str) -> Figure | None:
-    """Polar diagram of an arc, if it has three elevations or more."""
+def arc_diagram(
+    positions: Floats, levels: Mapping[str, Floats], label: str, title: str
+) -> Figure | None:
+    """Polar diagram of an arc.
+
+    Parameters
+    ----------
+    positions : (n, 3) array
+        Observers of the arc [m].
+    levels : mapping of str to (n,) array
+        Levels by name [dB].
+    label : str
+        Name of the levels, with their unit.
+    title : str
+        Title, to which the distance is added.
+
+    Returns
+    -------
+    Figure or None
+        The figure; None of fewer than three elevations.
+    """
     seen = directions(positions).rounded()
     elevation, rising = np.unique(seen.elevation_deg, return_index=True)
     if elevation.size < 3:
         return None
     return directivity(
         elevation,
-        {source: level[rising] for source, level in levels.items()},
+        {name: level[rising] for name, level in levels.items()},
         label=label,
         title=f"{title}; {seen.radius[0]:.4g} m",
     )

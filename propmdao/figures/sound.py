@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 from jax import Array
 
-from propmdao.acoustics.levels.bands import tones_in_bands
+from propmdao.acoustics.levels.bands import HALF_BAND, tones_in_bands
 from propmdao.acoustics.levels.decibels import level_db, mean_square
 from propmdao.acoustics.levels.weighting import a_weighting
 from propmdao.acoustics.signals import Tones
@@ -124,3 +124,19 @@ def band_levels(sound: Sound, observer: int = 0) -> Floats:
     tones = mean_square(sound.tones.total[observer])
     in_bands = tones_in_bands(sound.tones.frequency_hz, tones, sound.bands_hz)
     return np.asarray(level_db(np.asarray(in_bands) + sound.broadband[observer]))
+
+
+def band_edges(bands_hz: Floats) -> Floats:
+    """Frequencies between neighbouring third octaves, and at the ends of them all.
+
+    Parameters
+    ----------
+    bands_hz : (n_bands,) array
+        Mid-band frequencies [Hz].
+
+    Returns
+    -------
+    (n_bands + 1,) array
+        Edges [Hz].
+    """
+    return np.append(bands_hz / HALF_BAND, bands_hz[-1] * HALF_BAND)

@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import numpy.typing as npt
 
-from propmdao.acoustics.levels.bands import HALF_BAND, bands_in_bins, tones_in_bins
+from propmdao.acoustics.levels.bands import bands_in_bins, tones_in_bins
 from propmdao.acoustics.levels.decibels import level_db, mean_square, spl_db
-from propmdao.figures.sound import Sound, amplitudes, band_levels
+from propmdao.figures.sound import Sound, amplitudes, band_edges, band_levels
 from propmdao.figures.style import (
     GRID,
     LEVEL,
@@ -135,8 +135,7 @@ def _draw_narrowband(axes: Any, sound: Sound, observer: int, bins: npt.NDArray[A
         bins, level_db(noise), color=SOURCE_COLORS["broadband"], linewidth=2.0,
         label=f"broadband noise, {width}",
     )  # fmt: skip
-    center, bands = sound.bands_hz, band_levels(sound, observer)
-    edges = np.append(center / HALF_BAND, center[-1] * HALF_BAND)
+    bands, edges = band_levels(sound, observer), band_edges(sound.bands_hz)
     axes.stairs(bands, edges, baseline=None, color=RUN_COLORS[0], linewidth=2.0,
                 label="third octaves, tones and broadband noise")  # fmt: skip
     return float(bands.max())

@@ -19,6 +19,7 @@ from propmdao.runtime.output_files import replacing
 
 if TYPE_CHECKING:
     from matplotlib.projections.polar import PolarAxes
+    from matplotlib.text import Text
 
 try:
     from matplotlib.figure import Figure
@@ -90,6 +91,24 @@ def literal(text: str) -> str:
         The text as matplotlib has to be told it.
     """
     return text.replace("$", r"\$")
+
+
+def headline(figure: Figure, text: str) -> Text:
+    """Set the title of a whole figure, above all of its axes.
+
+    Parameters
+    ----------
+    figure : Figure
+        The figure.
+    text : str
+        Title that the user gave.
+
+    Returns
+    -------
+    Text
+        The title as matplotlib has it, to be changed.
+    """
+    return figure.suptitle(literal(text), x=0.02, ha="left", fontsize="medium")
 
 
 def save(figure: Figure, path: Path) -> None:

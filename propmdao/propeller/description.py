@@ -34,7 +34,13 @@ DISTRIBUTIONS = (
     "trailing_edge_angle_deg",
 )
 #: Those of them that follow from the airfoils where they are not described.
-_OF_AIRFOILS = DISTRIBUTIONS[3:4] + DISTRIBUTIONS[6:]
+_OF_AIRFOILS = (
+    "thickness_over_chord",
+    "camber_over_chord",
+    "area_over_c2",
+    "trailing_edge_over_R",
+    "trailing_edge_angle_deg",
+)
 #: Those that may be one number for all stations.
 _UNIFORM = ("sweep_over_R", "rake_over_R", "trailing_edge_over_R", "trailing_edge_angle_deg")
 #: Planforms of a blade's tip, as `propmdao.records.models.Tip` has them.

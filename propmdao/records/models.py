@@ -211,6 +211,27 @@ class SelfNoiseModel:
             if value not in known:
                 raise ValueError(f"{name} must be one of {', '.join(known)}; it is {value!r}")
 
+    def completed(self, transition: Transition, tip: Tip | None) -> SelfNoiseModel:
+        """Fill in what is left to the loads and to the propeller.
+
+        Parameters
+        ----------
+        transition : Transition
+            Transition of the loads.
+        tip : {"rounded", "square"} or None
+            Tip of the propeller's description; None says nothing about it.
+
+        Returns
+        -------
+        SelfNoiseModel
+            Model that is tripped where the loads are.
+        """
+        return dataclasses.replace(
+            self,
+            trip=transition.trip_in_noise if self.trip == "none" else self.trip,
+            tip=(tip or "rounded") if self.tip == "rounded" else self.tip,
+        )
+
 
 @dataclasses.dataclass(frozen=True)
 class NoiseModel:
@@ -260,11 +281,8 @@ class Model:
             are.
         """
         transition, noise = self.loads.transition.completed(described), self.noise
-        if (broadband := noise.broadband) is not None:
-            if broadband.trip == "none":
-                broadband = dataclasses.replace(broadband, trip=transition.trip_in_noise)
-            if broadband.tip == "rounded" and tip is not None:
-                broadband = dataclasses.replace(broadband, tip=tip)
+        if noise.broadband is not None:
+            broadband = noise.broadband.completed(transition, tip)
             noise = dataclasses.replace(noise, broadband=broadband)
         loads = dataclasses.replace(self.loads, transition=transition)
         return dataclasses.replace(self, loads=loads, noise=noise)

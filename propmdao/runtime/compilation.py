@@ -95,13 +95,7 @@ def _options() -> dict[str, Any] | None:
     """
     if jax.default_backend() != "cpu":
         return None
-    # Parts of a program that run at once, each waiting for threads of the same small pool, can wait
-    # for each other for ever: the periodic lattice at the default resolution did, on two cores.
-    options = {
-        "xla_cpu_use_fusion_emitters": False,
-        "xla_cpu_enable_concurrency_optimized_scheduler": False,
-        "xla_cpu_multi_thread_eigen": False,
-    }
+    options = {"xla_cpu_use_fusion_emitters": False}
     try:
         jax.jit(lambda: 0.0, compiler_options=options)()
     except jax.errors.JaxRuntimeError:  # a version of XLA without the choice

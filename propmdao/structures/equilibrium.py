@@ -9,6 +9,7 @@ import jax.numpy as jnp
 from jax import Array
 
 from propmdao.records.pytrees import Scalar, record
+from propmdao.runtime import linear_algebra
 from propmdao.runtime.compilation import compiled
 from propmdao.structures.beam import Beam, SectionForces, potential, work
 from propmdao.structures.shapes import N_SHAPES, Shapes
@@ -89,7 +90,9 @@ def equilibrium(
         q, first = state.q, state.n_steps == 0
         by_q, force = stiffness(fixed, q), -slope(fixed, q)
         by_u = jnp.where(outward[:, None] & outward, by_q, others)
-        dq = jnp.linalg.solve(jnp.where(first, by_u, by_q), jnp.where(first & ~outward, 0.0, force))
+        dq = linear_algebra.solve(
+            jnp.where(first, by_u, by_q), jnp.where(first & ~outward, 0.0, force)
+        )
         energies = jax.lax.map(lambda f: total(fixed, q + f * dq), jnp.append(_FRACTIONS, 0.0))
         falls = energies[:-1] <= energies[-1] + _ROUNDING * jnp.abs(energies[-1])
         fraction = jnp.where(falls.any(), _FRACTIONS[jnp.argmax(falls)], _FRACTIONS[-1])
@@ -104,6 +107,6 @@ def equilibrium(
     )
     # One more step, in which only the forces are differentiated, has the implicit derivative.
     q, by_q = jax.lax.stop_gradient((end.q, end.stiffness))
-    q = q - jnp.linalg.solve(by_q, slope(params, q))
-    stable = (end.last <= _TOLERANCE) & (jnp.linalg.eigvalsh(by_q)[0] > 0.0)
+    q = q - linear_algebra.solve(by_q, slope(params, q))
+    stable = (end.last <= _TOLERANCE) & (linear_algebra.eigenvalues(by_q)[0] > 0.0)
     return Equilibrium(q.reshape(4, N_SHAPES), stable)

@@ -9,15 +9,14 @@ levels over the arc ahead.
 """
 
 import argparse
-import dataclasses
 from pathlib import Path
 
 import numpy as np
 import openmdao.api as om
 
 import propmdao as pm
-from propmdao.analysis.comparisons import Row, print_comparison
-from propmdao.components import PropellerGroup
+from propmdao.analysis.comparisons import Row, print_comparison, write_comparison
+from propmdao.components import NoiseObjectiveComp, PropellerGroup, designed_blade
 from propmdao.components.drivers.gradient_search import Search, run_slsqp
 from propmdao.figures.blades import blade_comparison
 from propmdao.figures.directivity import directivity
@@ -26,7 +25,7 @@ from propmdao.records.wake_law import WakeGrid
 
 POINTS = ("hover", "flight")
 SPEED, INCIDENCE = np.array([0.0, 10.0]), 70.0  # m/s, deg; in hover any incidence is the same
-THRUST, SHARE = np.array([2.5, 2.6]), np.array([0.5, 0.5])  # N; of the time
+THRUST = np.array([2.5, 2.6])  # N
 DISTANCE, MICROPHONES = 1.905, [-60.0, -30.0]  # m, deg: ahead and below
 DIRECTIVITY = np.arange(-90.0, 91.0, 15.0)
 RADII = [0.15, 0.45, 0.75, 1.0]
@@ -70,7 +69,7 @@ def forward_flight(propeller: pm.Propeller, fidelity: pm.Fidelity = FIDELITY) ->
     om.Problem
         Problem that has run, ready for a search; `level` is the objective [dBA].
     """
-    n, n_observers = SPEED.size, len(MICROPHONES)
+    n = SPEED.size
     prob = om.Problem(reports=False)
     group = PropellerGroup(
         propeller=propeller,
@@ -82,12 +81,12 @@ def forward_flight(propeller: pm.Propeller, fidelity: pm.Fidelity = FIDELITY) ->
         broadband=True,
     )
     prob.model.add_subsystem("propeller", group, promotes=["*"])
-    mean = om.ExecComp(
-        "level = 10 * log10(sum(share * 10**(oaspl_total_dba / 10)))",
-        share=np.repeat(SHARE[:, None] / n_observers, n_observers, axis=1),
-        oaspl_total_dba={"shape": (n, n_observers)},
+    prob.model.add_subsystem(
+        "mean",
+        NoiseObjectiveComp(shape=(n, len(MICROPHONES)), exponent=1.0),
+        promotes_inputs=[("level_db", "oaspl_total_dba")],
+        promotes_outputs=[("soft_maximum_db", "level")],
     )
-    prob.model.add_subsystem("mean", mean, promotes=["oaspl_total_dba", "level"])
     prob.model.set_input_defaults("speed", SPEED, units="m/s")
     prob.model.set_input_defaults("incidence", np.full(n, INCIDENCE), units="deg")
     prob.model.set_input_defaults("thrust_required", THRUST, units="N")
@@ -101,17 +100,6 @@ def forward_flight(propeller: pm.Propeller, fidelity: pm.Fidelity = FIDELITY) ->
     prob.setup()
     prob.run_model()
     return prob
-
-
-def designed(propeller: pm.Propeller, prob: om.Problem) -> pm.Propeller:
-    """Make the blade that a problem holds."""
-    return dataclasses.replace(
-        propeller,
-        name=f"{propeller.name}_forward",
-        c_over_R=prob.get_val("chord_over_R"),
-        beta_deg=prob.get_val("beta", units="deg"),
-        source="design study of hover and forward flight",
-    )
 
 
 def evaluate(propeller: pm.Propeller, fidelity: pm.Fidelity = FIDELITY) -> list[pm.Analysis]:
@@ -141,6 +129,15 @@ def column(analysis: pm.Analysis) -> dict[str, float]:
         "along": result["hub_force"][0],
         "roll": 1e3 * result["hub_moment"][0],
     }
+
+
+def tabulate(analyses: dict[str, list[pm.Analysis]], output: Path) -> None:
+    """Print and write a table for each point."""
+    for k, point in enumerate(POINTS):
+        print(point)
+        columns = {name: column(points[k]) for name, points in analyses.items()}
+        print_comparison(ROWS, columns)
+        write_comparison(ROWS, columns, output / f"{point}.csv")
 
 
 def draw(
@@ -191,18 +188,15 @@ def main() -> None:
 
     start = pm.load_propeller(options.propeller)
     prob, search = design(start, output, fidelity)
-    blades = {"start": start, "optimum": designed(start, prob)}
+    blades = {"start": start, "optimum": designed_blade(prob, f"{start.name}_forward")}
     analyses = {name: evaluate(blade, fidelity) for name, blade in blades.items()}
-    for k, point in enumerate(POINTS):
-        print(point)
-        columns = {name: column(points[k]) for name, points in analyses.items()}
-        print_comparison(ROWS, columns, output / f"{point}.csv")
+    tabulate(analyses, output)
     history = search.history
     print(f"mean level {history.objective[0]:.2f} to {history.objective[-1]:.2f} dBA in "
           f"{history.objective.size} designs, {search.seconds:.0f} s and {search.compiling:.0f} s "
           f"to compile; largest violation {history.violation[-1]:.1e}")  # fmt: skip
     draw(blades, analyses, output)
-    print(f"Table and figures: {output}")
+    print(f"Tables and figures: {output}")
 
 
 if __name__ == "__main__":

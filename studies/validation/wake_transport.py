@@ -71,7 +71,7 @@ def relaxed(propeller: pm.Propeller, speed: float, steps: int = STEPS) -> dict[s
     lattice = lattice_geometry(rotor)
     by_all_blades = jax.jit(partial(blade_influence, azimuths=rotor.azimuths))
     core, thick = (
-        core_radius(middles(jnp.asarray(AGES)), omega, AIR.kinematic_viscosity, initial * radius)
+        core_radius(middles(jnp.asarray(AGES)), state, initial * radius)
         for initial in (BOUND_CORE, CORE)
     )
     trailing, ages, time = lattice.rings.corner[-1], jnp.asarray(AGES), AGES / omega

@@ -32,8 +32,7 @@ def test_one_blade_for_all_is_all_blades_solved(slow_flyer):
         Rings(*(turned(a, b) for a in (lattice.rings.corner, *_points_and_normals(lattice.rings))))
         for b in range(B)
     ]
-    ages, viscosity = jnp.asarray(case.wake.ages), case.state.air.kinematic_viscosity
-    core = core_radius(middles(ages), OMEGA, viscosity, 1e-4 * radius)
+    core = core_radius(middles(jnp.asarray(case.wake.ages)), case.state, 1e-4 * radius)
     rows = []
     for felt in rings:
         row = []

@@ -9,7 +9,7 @@ import pytest
 from propmdao.analysis.elastic.materials import ElasticError, material_of
 from propmdao.analysis.request import Request
 from propmdao.analysis.single_point import analyze
-from propmdao.analysis.sweeps import sweep
+from propmdao.analysis.sweeping.sweeps import sweep
 from propmdao.formats.propellers import load_propeller
 from propmdao.formats.toml_files import read_toml, write_toml
 from propmdao.propeller.checks import PropellerError

@@ -17,7 +17,7 @@ from propmdao.analysis import single_point
 from propmdao.analysis.flights import flyovers
 from propmdao.analysis.flights.flyover_results import Flight
 from propmdao.analysis.single_point import analyze
-from propmdao.analysis.sweeps import sweep
+from propmdao.analysis.sweeping.sweeps import sweep
 from propmdao.analysis.wopwop import foreign_case
 from propmdao.commands.output.json_output import print_json
 from propmdao.formats.propellers import load_propeller

@@ -89,6 +89,22 @@ def test_a_blade_tripped_in_the_loads_is_tripped_in_the_noise():
     np.testing.assert_array_equal(*noise)
 
 
+def test_a_tip_that_is_described_is_that_of_the_noise():
+    """Though its analysis had no broadband noise."""
+    rounded, square = (
+        analyze(dataclasses.replace(PROPELLER, tip=tip), rpm=4200.0, speed=8.0, fidelity=COARSE)
+        for tip in ("rounded", "square")
+    )
+    noise = NoiseModel(SelfNoiseModel(tip="square"))
+    asked = with_records(rounded, model=dataclasses.replace(rounded.model, noise=noise))
+    flight = Flight(HEIGHT, duration=2.0)
+    of_rounded, of_square, as_asked = (
+        fly_over(analysis, flight).mean_square["broadband"] for analysis in (rounded, square, asked)
+    )
+    np.testing.assert_array_equal(of_square, as_asked)
+    assert not np.array_equal(of_square, of_rounded)
+
+
 def test_a_flyover_is_in_the_air_of_its_analysis():
     along = run(speed=8.0, observers=arc(HEIGHT, [0.0]), density=1.0, sound_speed=330.0)
     heard = fly_over(along, Flight(HEIGHT, duration=2.0, absorption=False))

@@ -12,7 +12,7 @@ from scipy.interpolate import CubicSpline
 
 from propmdao.records.loads import PeriodicLoads, PointLoads
 from propmdao.records.panels import Panels
-from propmdao.records.pytrees import record
+from propmdao.records.pytrees import Scalar, record
 
 
 @record
@@ -136,16 +136,40 @@ def blade_loads(
         return loads
     tau = np.asarray(times, float)
     if isinstance(loads, PeriodicLoads):
-        table = np.asarray(loads.force)
-        angles = np.linspace(0, 2 * np.pi, len(table), endpoint=False)
-        value, slope, _ = sample(table, angles, azimuth + rotation_speed * tau, 2 * np.pi)
-        return unsteady_loads(loads.position, value, rotation_speed * slope)
+        return periodic_loads(loads, azimuth + rotation_speed * tau, rotation_speed)
     clock = np.asarray(loads.times, float)
     # Rows farther away change a cubic spline by less than 1e-13.
     first, last = np.searchsorted(clock, [tau.min(), tau.max()]) + np.array([-24, 24])
     near = slice(max(int(first), 0), int(last))
     value, rate, _ = sample(np.asarray(loads.force[blade, near]), clock[near], tau)
     return unsteady_loads(loads.position, value, rate)
+
+
+def periodic_loads(
+    loads: PeriodicLoads, azimuths: ArrayLike, rotation_speed: Scalar
+) -> UnsteadySources:
+    """Forces of a blade on its way around the turn, by a cubic spline.
+
+    Parameters
+    ----------
+    loads : PeriodicLoads
+        Forces at the azimuths of the table; JAX may trace them.
+    azimuths : (n_times,) array_like
+        Azimuths of the blade at the source times [rad].
+    rotation_speed : float
+        Rotation speed Omega [rad/s]; JAX may trace it.
+
+    Returns
+    -------
+    UnsteadySources
+        Forces at the source times.
+    """
+    n = loads.force.shape[0]
+    table_azimuths = np.linspace(0, 2 * np.pi, n, endpoint=False)
+    # The spline is linear in the forces that it goes through.
+    weights = sample(np.eye(n), table_azimuths, azimuths, 2 * np.pi)[:2]
+    force, slope = (jnp.tensordot(jnp.asarray(w), loads.force, axes=1) for w in weights)
+    return unsteady_loads(loads.position, force, rotation_speed * slope)
 
 
 def sample(

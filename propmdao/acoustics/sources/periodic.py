@@ -8,6 +8,7 @@ and the blades may stand at any azimuths. Observers fly along. `rotor_tones` tak
 
 from __future__ import annotations
 
+import dataclasses
 from collections.abc import Callable
 from functools import partial
 from typing import Any
@@ -28,8 +29,7 @@ from propmdao.acoustics.sources.moving_sources import (
     Sources,
     UnsteadySources,
     frame_sources,
-    sample,
-    unsteady_loads,
+    periodic_loads,
 )
 from propmdao.acoustics.sources.rotors import Rotor
 from propmdao.records.air import Air
@@ -160,10 +160,7 @@ def tilted_tones(
     """
     turning = jnp.asarray(state.rotation_speed) != 0.0
     omega = jnp.where(turning, state.rotation_speed, 1.0)
-    velocity = jnp.stack(
-        [jnp.asarray(u, float) for u in (state.edgewise_speed, 0.0, state.axial_speed)]
-    )
-    n_loads = loads.force.shape[0]
+    velocity = state.velocity
 
     def heard(
         name: str, n_azimuths: int, sources_at: Callable[[Floats], Panels | UnsteadySources]
@@ -184,18 +181,11 @@ def tilted_tones(
             n_harmonics,
         )
 
-    def forces(psi: Floats) -> UnsteadySources:
-        # The spline is linear in the forces that it goes through.
-        angles = 2 * np.pi * np.arange(n_loads) / n_loads
-        value, slope, _ = sample(np.eye(n_loads), angles, psi, 2 * np.pi)
-        force, rate = (
-            jnp.tensordot(jnp.asarray(of_table), loads.force, axes=1) for of_table in (value, slope)
-        )
-        return unsteady_loads(loads.position, force, omega * rate)
-
     amplitudes = {
         "thickness": heard("thickness", 0, lambda psi: panels),
-        "loading": heard("loading", n_loads, forces),
+        "loading": heard(
+            "loading", loads.force.shape[0], lambda psi: periodic_loads(loads, psi, omega)
+        ),
     }
     parts = {
         name: jnp.where(turning, TONAL_SOURCES[name].scale(state.air) * p, 0.0)
@@ -217,19 +207,14 @@ def _n_emissions(step: int, n_harmonics: int, n_azimuths: int) -> int:
 
 def _turning_and_flying(psi: Floats, tau: Array, omega: Array, velocity: Array) -> Poses:
     """Poses of a frame that turns about +z and flies along, times last; traced."""
-    cosine, sine, none = np.cos(psi), np.sin(psi), np.zeros_like(psi)
-    matrix = np.array([[cosine, -sine, none], [sine, cosine, none], [none, none, none + 1.0]])
-    slope = np.array([[-sine, -cosine, none], [cosine, -sine, none], [none, none, none]])
-    in_plane = np.array([[cosine, -sine, none], [sine, cosine, none], [none, none, none]])
-    traced: tuple[Any, ...] = (
-        matrix,
-        omega * slope,
-        -(omega**2) * in_plane,
-        velocity[:, None] * tau,
-        jnp.broadcast_to(velocity[:, None], (3, psi.size)),
-        np.zeros((3, psi.size)),
-    )
-    return Poses(*traced)
+    turn = poses((rotation((0, 0, 1), rate=1.0),), psi).time_last  # at 1 rad/s
+    traced: dict[str, Any] = {
+        "rotation_rate": omega * turn.rotation_rate,
+        "rotation_acceleration": omega**2 * turn.rotation_acceleration,
+        "origin": velocity[:, None] * tau,
+        "velocity": jnp.broadcast_to(velocity[:, None], turn.velocity.shape),
+    }
+    return dataclasses.replace(turn, **traced)
 
 
 def symmetry(azimuths: ArrayLike) -> int:

@@ -92,21 +92,23 @@ def _along(operator: Array, nodes: Array) -> Array:
     return jnp.tensordot(operator, nodes, axes=1)
 
 
-def bound_segments(rings: Rings) -> tuple[Array, Array]:
-    """Start and end of the bound segments, root to tip: (nc, ns, 3) each."""
-    return rings.corner[:-1, :-1], rings.corner[:-1, 1:]
+def ring_segments(rings: Rings) -> tuple[Array, Array]:
+    """Start and end of all segments, (n_segments, 3) each [m].
+
+    First the bound ones (nc * ns), root to tip, then the chordwise ones (nc * (ns + 1)),
+    downstream.
+    """
+    corner = rings.corner
+    start = jnp.concatenate([corner[:-1, :-1].reshape(-1, 3), corner[:-1].reshape(-1, 3)])
+    end = jnp.concatenate([corner[:-1, 1:].reshape(-1, 3), corner[1:].reshape(-1, 3)])
+    return start, end
 
 
-def chordwise_segments(rings: Rings) -> tuple[Array, Array]:
-    """Start and end of the chordwise segments, downstream: (nc, ns + 1, 3) each."""
-    return rings.corner[:-1], rings.corner[1:]
-
-
-def segment_circulation(circulation: Array) -> tuple[Array, Array]:
-    """Circulation of the bound (nc, ns) and chordwise (nc, ns + 1) segments of rings (nc, ns)."""
+def segment_circulation(circulation: Array) -> Array:
+    """Circulation of all segments of rings (nc, ns), in the order of `ring_segments`."""
     bound = circulation - jnp.pad(circulation, ((1, 0), (0, 0)))[:-1]
     padded = jnp.pad(circulation, ((0, 0), (1, 1)))
-    return bound, padded[:, :-1] - padded[:, 1:]
+    return jnp.concatenate([bound.ravel(), (padded[:, :-1] - padded[:, 1:]).ravel()])
 
 
 def turned(points: Array, azimuths: np.ndarray) -> Array:
@@ -141,11 +143,7 @@ def blade_influence(points: Array, rings: Rings, azimuths: np.ndarray, core: Sca
         Velocity per unit circulation [1/m].
     """
     nc, ns = rings.corner.shape[0] - 1, rings.corner.shape[1] - 1
-    (root, tip), (ahead, behind) = bound_segments(rings), chordwise_segments(rings)
-    start, end = (
-        turned(jnp.concatenate([b.reshape(-1, 3), c.reshape(-1, 3)]), azimuths)
-        for b, c in ((root, ahead), (tip, behind))
-    )
+    start, end = (turned(ends, azimuths) for ends in ring_segments(rings))
     velocity = segment_velocities(points, start, end, core)
     bound = velocity[:, : nc * ns].reshape(3, nc, ns, -1)
     chordwise = velocity[:, nc * ns :].reshape(3, nc, ns + 1, -1)

@@ -26,6 +26,7 @@ from propmdao.aerodynamics.lattice.strips import Strips
 from propmdao.aerodynamics.sections.laws import SectionLaws
 from propmdao.aerodynamics.sections.recambering import SectionStates
 from propmdao.records.pytrees import record
+from propmdao.runtime import linear_algebra
 
 _TOLERANCE = 1.0e-9  # in the lift coefficient
 _LONGEST_STEP = np.radians(15.0)
@@ -177,7 +178,7 @@ def solve_period_recambering(flow: PeriodFlow, laws: SectionLaws, start: Array) 
 
     def step(state: _Newton) -> _Newton:
         inertia = 2.0 * jnp.pi / state.time * jnp.diag(fixed_flow.attached.ravel())
-        change = jnp.linalg.solve(state.slope + inertia, state.missing.ravel()).reshape(shape)
+        change = linear_algebra.solve(state.slope + inertia, state.missing.ravel()).reshape(shape)
         # Each strip by itself: one that has just stalled holds up no other.
         delta = state.recambering - jnp.clip(change, -longest, longest)
         following = state.n_trials + 1
@@ -197,7 +198,7 @@ def solve_period_recambering(flow: PeriodFlow, laws: SectionLaws, start: Array) 
     # One more Newton step, in which alone the arguments count: its slope is that of the solution.
     delta, slope = jax.lax.stop_gradient((end.recambering, end.slope))
     missing = _residual(flow, laws, delta)
-    return delta - jnp.linalg.solve(slope, missing.ravel()).reshape(shape)
+    return delta - linear_algebra.solve(slope, missing.ravel()).reshape(shape)
 
 
 class _Newton(NamedTuple):

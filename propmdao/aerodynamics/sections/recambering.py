@@ -27,6 +27,7 @@ from jax import Array
 from propmdao.aerodynamics.lattice.strips import Strips
 from propmdao.aerodynamics.sections.laws import SectionLaws
 from propmdao.records.pytrees import record
+from propmdao.runtime import linear_algebra
 
 _TOLERANCE = 1.0e-9  # in the lift coefficient
 _MAX_STEPS = 60
@@ -150,7 +151,7 @@ def solve_recambering(flow: StripFlow, laws: SectionLaws) -> Array:
     def step(state: _Newton) -> _Newton:
         delta = state.recambering
         missing, slope = _residual_and_slope(fixed_flow, fixed_laws, delta)
-        newton = -jnp.linalg.solve(slope, missing)
+        newton = -linear_algebra.solve(slope, missing)
         newton = newton * jnp.minimum(1.0, _LONGEST_STEP / jnp.abs(newton).max())
         trials = delta + fractions * newton
         best = jnp.argmin((jax.vmap(residual)(trials) ** 2).sum(axis=1))
@@ -161,7 +162,7 @@ def solve_recambering(flow: StripFlow, laws: SectionLaws) -> Array:
     end = jax.lax.while_loop(unfinished, step, start)
     # One more Newton step, in which alone the arguments count: its slope is that of the solution.
     delta, slope = jax.lax.stop_gradient((end.recambering, end.slope))
-    return delta - jnp.linalg.solve(slope, _residual(flow, laws, delta))
+    return delta - linear_algebra.solve(slope, _residual(flow, laws, delta))
 
 
 class _Newton(NamedTuple):

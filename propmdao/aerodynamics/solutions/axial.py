@@ -122,12 +122,7 @@ def loads_at(flow: AxialFlow, induced_velocity: Scalar) -> LatticeLoads:
     case, lattice = flow.case, flow.lattice
     rotor, state = case.rotor, case.state
     wake = helical_wake(lattice.rings.corner[-1], case.wake, rotor, state, induced_velocity)
-    core = core_radius(
-        middles(jnp.asarray(case.wake.ages)),
-        state.rotation_speed,
-        state.air.kinematic_viscosity,
-        BOUND_CORE * rotor.radius,
-    )
+    core = core_radius(middles(jnp.asarray(case.wake.ages)), state, BOUND_CORE * rotor.radius)
     onset = axial_onset(lattice, state, induced_velocity)
     return loads_with_wake(lattice, wake, core, onset, state.air, case.sections)
 
@@ -172,7 +167,6 @@ def solve(case: RotorCase, thrust_guess: Scalar = 0.0) -> RotorLoads:
             return residual(params, w, loads), loads
 
         guess = jnp.where(thrust_guess == 0.0, _GUESS * tip_speed, known)
-
         w, loads = decreasing_root(
             trial,
             lowest_induced_velocity(state, flow.case.rotor.radius),

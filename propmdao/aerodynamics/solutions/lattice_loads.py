@@ -14,8 +14,7 @@ from propmdao.aerodynamics.lattice.rings import (
     BOUND_CORE,
     Rings,
     blade_influence,
-    bound_segments,
-    chordwise_segments,
+    ring_segments,
     segment_circulation,
     vortex_rings,
     wake_influence,
@@ -33,6 +32,7 @@ from propmdao.geometry.lattice import strip_middle
 from propmdao.records.air import Air
 from propmdao.records.pytrees import Scalar, record
 from propmdao.records.states import RotorState
+from propmdao.runtime import linear_algebra
 
 
 @record
@@ -158,14 +158,12 @@ def lattice_geometry(rotor: RotorGeometry) -> LatticeGeometry:
     """
     nodes, radius = rotor.nodes, rotor.radius
     rings = vortex_rings(nodes)
-    (root, tip), (ahead, behind) = bound_segments(rings), chordwise_segments(rings)
-    f = jnp.asarray(strip_middle(nodes.shape[1] - 1))[None, :, None]
-    on_bound = (1.0 - f) * root + f * tip
-    on_chordwise = 0.5 * (ahead + behind)
-    points = jnp.concatenate(
-        [rings.collocation, on_bound.reshape(-1, 3), on_chordwise.reshape(-1, 3)]
-    )
-    segment = jnp.concatenate([(tip - root).reshape(-1, 3), (behind - ahead).reshape(-1, 3)])
+    start, end = ring_segments(rings)
+    nc, ns = nodes.shape[0] - 1, nodes.shape[1] - 1
+    # Of a bound segment the middle of its strip, of a chordwise one its own.
+    f = jnp.concatenate([jnp.tile(strip_middle(ns), nc), jnp.full(nc * (ns + 1), 0.5)])[:, None]
+    points = jnp.concatenate([rings.collocation, (1.0 - f) * start + f * end])
+    segment = end - start
     influence = blade_influence(points, rings, rotor.azimuths, BOUND_CORE * radius)
     return LatticeGeometry(rings, blade_strips(nodes, rings, radius), points, segment, influence)
 
@@ -211,7 +209,7 @@ def loads_with_wake(
 
     relative_speed = onset.relative_speed
     recambered = jnp.tile(jnp.diag(relative_speed), (nc, 1))
-    unit = jnp.linalg.solve(downwash.T, -jnp.column_stack([normalwash, recambered]))
+    unit = linear_algebra.solve(downwash.T, -jnp.column_stack([normalwash, recambered]))
     circulation, response = unit[:, 0], unit[:, 1:]
     # The last rings carry the circulation of their whole strip.
     strip_flow = StripFlow(strips, relative_speed, circulation[-ns:], response[-ns:])
@@ -225,7 +223,7 @@ def loads_with_wake(
     induced = jnp.tensordot(circulation, influence[:, :, n_panels:], axes=(0, 1))
     velocity = (onset.velocity[:, n_panels:] + induced).T
     circulation = circulation.reshape(nc, ns)
-    strength = jnp.concatenate([g.ravel() for g in segment_circulation(circulation)])
+    strength = segment_circulation(circulation)
     lift = air.density * strength[:, None] * jnp.cross(velocity, lattice.segment)
     return LatticeLoads(
         circulation,

@@ -26,11 +26,8 @@ from propmdao.aerodynamics.solutions.period.flow import (
     mean_thrust,
 )
 from propmdao.aerodynamics.solutions.period.guess import bracket, coarse_root, momentum_less
-from propmdao.aerodynamics.solutions.period.loads import (
-    PeriodBladeLoads,
-    azimuths_of,
-    tilted_onset,
-)
+from propmdao.aerodynamics.solutions.period.loads import PeriodBladeLoads
+from propmdao.aerodynamics.solutions.period.onset import azimuths_of, tilted_onset
 from propmdao.aerodynamics.solutions.point_sums import strip_loads
 from propmdao.aerodynamics.solutions.result import (
     TiltedLoads,

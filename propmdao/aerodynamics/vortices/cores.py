@@ -6,11 +6,10 @@ import jax.numpy as jnp
 from jax import Array
 
 from propmdao.records.pytrees import Scalar
+from propmdao.records.states import RotorState
 
 
-def core_radius(
-    ages: Array, rotation_speed: Scalar, kinematic_viscosity: Scalar, initial: Scalar
-) -> Array:
+def core_radius(ages: Array, state: RotorState, initial: Scalar) -> Array:
     """Core radius of wake segments, growing by (eddy) diffusion.
 
     rc^2 = rc0^2 + 4 alpha delta nu t with alpha = 1.25643 (Lamb-Oseen) and the eddy viscosity
@@ -21,10 +20,8 @@ def core_radius(
     ----------
     ages : (n,) array
         Azimuths behind the blade [rad]; `middles` of the nodes' for trailing segments.
-    rotation_speed : float
-        Rotation speed [rad/s].
-    kinematic_viscosity : float
-        Kinematic viscosity [m^2/s].
+    state : RotorState
+        Rotation speed and air of the rotor.
     initial : float
         Core radius at the blade [m].
 
@@ -33,8 +30,8 @@ def core_radius(
     (n,) array
         Core radius at each age [m].
     """
-    time = ages / rotation_speed
-    return jnp.sqrt(initial**2 + 4.0 * 1.25643 * 10.0 * kinematic_viscosity * time)
+    time = ages / state.rotation_speed
+    return jnp.sqrt(initial**2 + 4.0 * 1.25643 * 10.0 * state.air.kinematic_viscosity * time)
 
 
 def middles(ages: Array) -> Array:

@@ -286,11 +286,8 @@ def induced_at_nodes(
     coarse = jnp.einsum("ks,lbs->lbk", free.to_strips, strips)
     ring = read(jnp.broadcast_to(lag, (coarse.shape[2], lag.size)), coarse)
 
-    def core(at: Array) -> Array:
-        viscosity = state.air.kinematic_viscosity
-        return core_radius(at, state.rotation_speed, viscosity, free.core)
-
-    sheets = Sheets(nodes, core(middles(free.ages)), core(free.ages[:-1]))
+    ages = middles(free.ages), free.ages[:-1]
+    sheets = Sheets(nodes, *(core_radius(age, state, free.core) for age in ages))
     # In lengths of the way from the axis to the tip, for single precision.
     length = jnp.linalg.norm(free.edge[-1, :2])
     start, end, circulation = bound

@@ -40,6 +40,12 @@ class Sheets:
         """The sheets in lengths of one's own, in single precision."""
         return jax.tree.map(lambda x: (x / length).astype(SINGLE), self)
 
+    @property
+    def cores(self) -> tuple[Array, Array]:
+        """Core radii, trailing and shed, of the segments behind all blades."""
+        n_blades = self.nodes.shape[1]
+        return jnp.tile(self.trailing_core, n_blades), jnp.tile(self.shed_core, n_blades)
+
     def youngest(self, n_rings: int) -> Sheets:
         """The part of the sheets next to the blades, so many rings long."""
         return Sheets(
@@ -156,29 +162,53 @@ def sheet_velocities(points: Array, sheets: Sheets, ring: Array, present: Array)
     (3, n_points) array
         Velocity [m/s].
     """
-    n_blades = ring.shape[0]
-    padded = jnp.pad(ring, ((0, 0), (1, 1), (0, 0)))
-    along = (padded[:, :-1] - padded[:, 1:]).swapaxes(0, 1)
-    across = shed(ring, present).swapaxes(0, 1)
-    trailing_core, shed_core = (
-        jnp.tile(core, n_blades) for core in (sheets.trailing_core, sheets.shed_core)
+    rings, segments = (
+        strengths.swapaxes(0, 1).reshape(ring.shape[1], -1)
+        for strengths in (ring, shed(ring, present))
     )
+    return velocities_of_strips(points, sheets.nodes, rings, segments, sheets.cores)
 
+
+def velocities_of_strips(
+    points: Array, nodes: Array, ring: Array, shed: Array, cores: tuple[Array, Array]
+) -> Array:
+    """Velocity at points by the strips of sheets behind all blades.
+
+    Parameters
+    ----------
+    points : (n_points, 3) array
+        Points at which the velocity is wanted [m].
+    nodes : (ns + 1, n_blades, n_nodes, 3) array
+        Nodes of the filaments [m].
+    ring, shed : (ns, n_blades * (n_nodes - 1)) arrays
+        Circulation of the rings, and of the segments at their younger ends [m^2/s].
+    cores : tuple of two (n_blades * (n_nodes - 1),) arrays
+        Core radius of the segments along the filaments, and across them [m].
+
+    Returns
+    -------
+    (3, n_points) array
+        Velocity [m/s].
+    """
+    trailing_core, shed_core = cores
+    padded = jnp.pad(ring, ((1, 1), (0, 0)))
+
+    # The checkpoints keep reverse mode from storing every block of segments x points.
+    @jax.checkpoint
     def of_filament(filament: tuple[Array, Array]) -> Array:
-        nodes, strength = filament
-        start, end = nodes[:, :-1].reshape(-1, 3), nodes[:, 1:].reshape(-1, 3)
-        return summed_velocities(points, start, end, trailing_core, strength.ravel())
+        place, strength = filament
+        start, end = place[:, :-1].reshape(-1, 3), place[:, 1:].reshape(-1, 3)
+        return summed_velocities(points, start, end, trailing_core, strength)
 
-    def of_strip(strip: tuple[Array, Array, Array]) -> Array:
-        start, end, strength = strip
-        return summed_velocities(
-            points, start.reshape(-1, 3), end.reshape(-1, 3), shed_core, strength.ravel()
-        )
+    @jax.checkpoint
+    def across_strip(strip: tuple[Array, Array, Array]) -> Array:
+        *edges, strength = strip
+        start, end = (edge[:, :-1].reshape(-1, 3) for edge in edges)
+        return summed_velocities(points, start, end, shed_core, strength)
 
-    of_filaments = jax.lax.map(of_filament, (sheets.nodes, along))
-    edges = sheets.nodes[:, :, :-1]
-    of_strips = jax.lax.map(of_strip, (edges[:-1], edges[1:], across))
-    return of_filaments.sum(axis=0) + of_strips.sum(axis=0)
+    along = jax.lax.map(of_filament, (nodes, padded[:-1] - padded[1:]))
+    across = jax.lax.map(across_strip, (nodes[:-1], nodes[1:], shed))
+    return along.sum(axis=0) + across.sum(axis=0)
 
 
 def normalwash_of_strips(points: Array, normals: Array, sheets: Sheets, now: Array) -> Array:
@@ -199,9 +229,7 @@ def normalwash_of_strips(points: Array, normals: Array, sheets: Sheets, now: Arr
         Normalwash per unit circulation of the strips of each blade [1/m].
     """
     n_blades = sheets.nodes.shape[1]
-    trailing_core, shed_core = (
-        jnp.tile(core, n_blades) for core in (sheets.trailing_core, sheets.shed_core)
-    )
+    trailing_core, shed_core = sheets.cores
 
     def summed(nodes: tuple[Array, Array], core: Array, strength: Array) -> Array:
         start, end = (ends.reshape(-1, 3) for ends in nodes)

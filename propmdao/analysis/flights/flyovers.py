@@ -187,19 +187,12 @@ def _broadband(
     # frequencies are those of flying along times Doppler's factor.
     pose = poses(track, times)
     beside = np.einsum("tij,ti->tj", np.asarray(pose.rotation), place - np.asarray(pose.origin))
-    n_blades, model = int(analysis.changed_propeller.n_blades), analysis.model.noise.broadband
+    propeller, model = analysis.changed_propeller, analysis.model.noise.broadband
     if model is None:
-        model = SelfNoiseModel(analysis.model.loads.transition.trip_in_noise)
-    powers = [
-        self_noise(
-            flow,
-            n_blades,
-            analysis.state,
-            position[None],
-            model,
-            BANDS_HZ / factor,
-            analysis.point.turbulent,
-        ).total[0]
+        model = SelfNoiseModel().completed(analysis.model.loads.transition, propeller.tip)
+    n_blades, state, eddies = int(propeller.n_blades), analysis.state, analysis.point.turbulent
+    noises = (
+        self_noise(flow, n_blades, state, position[None], model, BANDS_HZ / factor, eddies)
         for position, factor in zip(beside, doppler, strict=True)
-    ]
-    return np.array(powers)
+    )
+    return np.array([noise.total[0] for noise in noises])

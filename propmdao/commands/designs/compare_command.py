@@ -21,10 +21,10 @@ from propmdao.commands.output.output_files import (
 )
 from propmdao.commands.output.warning_lines import warning_lines
 from propmdao.formats.endings import PROPELLER_READERS, described
-from propmdao.runtime.terminal import print_line, printable
+from propmdao.runtime.terminal import print_line
 
 if TYPE_CHECKING:
-    from propmdao.analysis.results import Analysis
+    from propmdao.commands.designs.compared_analyses import ComparedAnalyses
     from propmdao.propeller.description import Propeller
     from propmdao.records.listening import Listening
 
@@ -117,36 +117,33 @@ def _compare(options: argparse.Namespace) -> None:
     # Slow to import, so only once the arguments are known to be good.
     from propmdao.analysis.request import Request
 
-    asked = asked_of(options) | air_of(options) | {"listening": listening}
-    Request.of({"listening": listening}, **{k: v for k, v in asked.items() if k != "listening"})
+    asked = asked_of(options) | air_of(options)
+    Request.of({"listening": listening}, **asked)
     from propmdao.analysis.single_point import analyze
+    from propmdao.commands import report
+    from propmdao.commands.designs.compared_analyses import ComparedAnalyses
     from propmdao.formats.propellers import load_propeller
 
     with warning_lines("compare"):
         loaded = [load_propeller(name) for name in options.propellers]
         propellers = dict(zip(_labels(options.propellers, loaded), loaded, strict=True))
-        analyses = {name: analyze(each, **asked) for name, each in propellers.items()}
-    results = {name: analysis.to_dict() for name, analysis in analyses.items()}
-    observer = _observer(options, results)
+        analyses = {
+            name: analyze(propeller, listening=listening, **asked)
+            for name, propeller in propellers.items()
+        }
+    chosen = None if options.observer is None else int(options.observer) - 1
+    compared = ComparedAnalyses.beside(analyses, chosen)
+    results = list(compared.results.values())
     if options.json:
-        files = _write(options, propellers, analyses, observer)
-        print_json({"results": list(results.values()), "files": files})
+        files = _write(options, propellers, compared)
+        print_json({"results": results, "files": files})
         return
-    from propmdao.analysis.comparisons import operation_and_levels, print_comparison
-    from propmdao.commands import report
-
-    columns = {}
-    for name, result in results.items():
-        rows, columns[printable(name)] = operation_and_levels(result, observer or 0)
-    print_comparison(rows, columns, n_changes=len(columns) - 1)
-    for result in results.values():
-        report.print_doubts([result])
-    first = next(iter(results.values()))
-    if observer is None:
+    compared.print_table()
+    if compared.observer is None:
         print_line("No observers: --arc RADIUS ELEVATION... adds their noise.")
-    elif first["model"]["noise"]["broadband"] is None:
+    elif results[0]["model"]["noise"]["broadband"] is None:
         print_line(report.TONES_ONLY)
-    files = _write(options, propellers, analyses, observer)
+    files = _write(options, propellers, compared)
     if files:
         print_line(" ".join(["Files:", *files]))
 
@@ -187,41 +184,20 @@ def _labels(typed: list[str], propellers: list[Propeller]) -> list[str]:
     return labels
 
 
-def _observer(options: argparse.Namespace, results: dict[str, dict[str, Any]]) -> int | None:
-    """Index of the observer of table and spectra; None where nobody listens."""
-    observers = next(iter(results.values()))["observers"]
-    if options.observer is not None:
-        return int(options.observer) - 1
-    levels = [float(observer["oaspl_db"]) for observer in observers]
-    return levels.index(max(levels)) if levels else None
-
-
 def _write(
-    options: argparse.Namespace,
-    propellers: dict[str, Propeller],
-    analyses: dict[str, Analysis],
-    observer: int | None,
+    options: argparse.Namespace, propellers: dict[str, Propeller], compared: ComparedAnalyses
 ) -> list[str]:
     """Write the folder of results; the files in it."""
     if options.results is None:
         return []
-    from propmdao.analysis.comparisons import operation_and_levels, write_comparison
-    from propmdao.commands.output.results_folder import file_name, write_record
+    from propmdao.commands.output.results_folder import write_record
     from propmdao.figures.designs.of_comparison import compared_figures
 
     folder: Path = options.results
-    results = {name: analysis.to_dict() for name, analysis in analyses.items()}
-    files = [str(write_record(folder, options, propellers, results=list(results.values())))]
-    columns = {}
-    for name, result in results.items():
-        rows, columns[name] = operation_and_levels(result, observer or 0)
-    table = folder / "comparison.csv"
-    write_comparison(rows, columns, table, n_changes=len(columns) - 1)
-    files += [str(table), *save_figures(folder, compared_figures(analyses, observer))]
-    if observer is not None:
-        from propmdao.analysis.sounds import write_sounds
-
-        paths = {folder / f"{file_name(name)}.wav": each for name, each in analyses.items()}
-        sounds = write_sounds(paths, _seconds(options))
-        files += [str(sound.path) for sound in sounds]
+    results = list(compared.results.values())
+    files = [str(write_record(folder, options, propellers, results=results))]
+    files += compared.write_table(folder / "comparison.csv")
+    files += save_figures(folder, compared_figures(compared.analyses, compared.observer))
+    if compared.observer is not None:
+        files += compared.write_sounds(folder, _seconds(options))
     return files

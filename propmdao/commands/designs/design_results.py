@@ -3,24 +3,19 @@
 from __future__ import annotations
 
 import argparse
-import csv
 from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from propmdao.analysis.comparisons import (
-    operation_and_levels,
-    print_comparison,
-    write_comparison,
-)
 from propmdao.analysis.single_point import analyze
-from propmdao.commands import report
+from propmdao.analysis.sounds import MAX_CHANNELS
+from propmdao.commands.designs.compared_analyses import ComparedAnalyses
 from propmdao.commands.designs.design_options import ASKED_OPTIONS
 from propmdao.commands.designs.design_search import TOLERANCE
 from propmdao.commands.observer_options import listening_of
-from propmdao.commands.output.output_files import save_figures
+from propmdao.commands.output.output_files import save_figures, write_csv
 from propmdao.commands.output.progress import progress
 from propmdao.commands.output.results_folder import file_name
 from propmdao.commands.output.warning_lines import warning_lines
@@ -31,13 +26,10 @@ from propmdao.formats.toml_files import write_toml
 from propmdao.propeller.description import Propeller
 from propmdao.propeller.design_choices import RESPONSES
 from propmdao.records.states import OperatingPoint
-from propmdao.runtime.output_files import replacing
-from propmdao.runtime.terminal import print_line, printable
+from propmdao.runtime.terminal import print_line
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
-
-    from propmdao.analysis.results import Analysis
 
 
 def write_results(
@@ -77,69 +69,41 @@ def write_results(
     asked = {name: getattr(options, name) for name in ASKED_OPTIONS if name != "trip"}
     if len(listening.observers):  # a blade that is quieter in tones may be louder in all
         asked |= {"broadband": True, "trip": options.trip}
-    results = []
+    results: list[dict[str, Any]] = []
     for number, point in enumerate(points, start=1):
         suffix = "" if len(points) == 1 else f"_at_{number}"
         progress(f"analysing both blades at {point.thrust:g} N, {point.speed:g} m/s")
         with warning_lines("optimise"):
             analyses = {
-                printable(blade.name): analyze(blade, point, listening=listening, **asked)
+                blade.name: analyze(blade, point, listening=listening, **asked)
                 for blade in (described, designed)
             }
-        results += [analysis.to_dict() for analysis in analyses.values()]
-        observer = _loudest(analyses)
-        columns = {}
-        for name, analysis in analyses.items():
-            rows, columns[name] = operation_and_levels(analysis.to_dict(), observer or 0)
+        compared = ComparedAnalyses.beside(analyses)
+        results += compared.results.values()
         if len(points) > 1:
             print_line(f"At {point.thrust:g} N, {point.speed:g} m/s:")
-        print_comparison(rows, columns)
-        report.print_doubts([analysis.to_dict() for analysis in analyses.values()])
-        table = folder / f"comparison{suffix}.csv"
-        write_comparison(rows, columns, table)
-        files.append(str(table))
-        drawn = compared_figures(analyses, observer)
-        if number > 1:
-            del drawn["blades"]
-        figures |= {
-            name if name == "blades" else f"{name}{suffix}": figure
-            for name, figure in drawn.items()
-        }
-        if observer is not None:
-            files += _sounds(folder, analyses, suffix)
+        compared.print_table()
+        files += compared.write_table(folder / f"comparison{suffix}.csv")
+        drawn = compared_figures(analyses, compared.observer)
+        figures.setdefault("blades", drawn.pop("blades"))
+        figures |= {f"{name}{suffix}": figure for name, figure in drawn.items()}
+        if 0 < len(listening.observers) <= MAX_CHANNELS:
+            files += compared.write_sounds(folder, 5.0, suffix)
     files += save_figures(folder, figures)
     print_line(" ".join(["Files:", *files]))
     return {"results": results}
 
 
-def _loudest(analyses: dict[str, Analysis]) -> int | None:
-    """Observer of the described blade's loudest tones; None where nobody listens."""
-    first = next(iter(analyses.values()))
-    if not len(first.listening.observers):
-        return None
-    levels = [observer["oaspl_db"] for observer in first.to_dict()["observers"]]
-    return int(np.argmax(levels))
-
-
-def _sounds(folder: Path, analyses: dict[str, Analysis], suffix: str) -> list[str]:
-    from propmdao.analysis.sounds import MAX_CHANNELS, write_sounds
-
-    if len(next(iter(analyses.values())).listening.observers) > MAX_CHANNELS:
-        return []
-    paths = {folder / f"{file_name(name)}{suffix}.wav": each for name, each in analyses.items()}
-    return [str(sound.path) for sound in write_sounds(paths, 5.0)]
-
-
 def _write_history(path: Path, history: SearchHistory, label: str) -> None:
     """Write every design that was tried."""
-    with replacing(path) as file, file.open("w", newline="", encoding="utf-8") as stream:
-        writer = csv.writer(stream)
-        writer.writerow(["design", label, "largest violation, scaled", "violated, or failure"])
-        rows = zip(history.objective, history.violation, history.constraint, strict=True)
-        for number, (objective, violation, constraint) in enumerate(rows, start=1):
-            failed = not np.isfinite(violation)
-            numbers = ["", ""] if failed else [float(objective), float(violation)]
-            writer.writerow([number, *numbers, constraint])
+    rows: list[list[Any]] = []
+    designs = zip(history.objective, history.violation, history.constraint, strict=True)
+    for number, (objective, violation, constraint) in enumerate(designs, start=1):
+        failed = not np.isfinite(violation)
+        numbers = ["", ""] if failed else [float(objective), float(violation)]
+        rows.append([number, *numbers, constraint])
+    heads = ["design", label, "largest violation, scaled", "violated, or failure"]
+    write_csv(path, heads, rows)
 
 
 def _history_figure(history: SearchHistory, minimise: str, name: str) -> Figure:

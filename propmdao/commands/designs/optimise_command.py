@@ -100,11 +100,14 @@ def _optimise(options: argparse.Namespace) -> None:
     require_words(points, free, options.minimise, limits, n_control, n_heard)
     with warning_lines("optimise"):
         propeller = load_propeller(options.propeller)
+    new_name = options.new_name or f"{propeller.name}_quiet"
+    if new_name == propeller.name:
+        raise ValueError(f"--name {new_name} is that of the described propeller: give another one")
     words: dict[str, Any] = {
         "free": free,
         "minimise": options.minimise,
         "limits": limits,
-        "n_control": options.control_points,
+        "n_control": n_control,
         **{name: getattr(options, name) for name in ASKED_OPTIONS},
     }
     inputs = _inputs(points, observers.tolist(), words, search)
@@ -124,7 +127,7 @@ def _optimise(options: argparse.Namespace) -> None:
 
     with locked(folder / RECORD):
         history = run_search(prob, folder, search, options.minimise, factory)
-        designed = designed_blade(prob, options.new_name or f"{propeller.name}_quiet")
+        designed = designed_blade(prob, new_name)
         results = write_results(folder, options, (propeller, designed), points, history)
         write_record(folder, options, described | {"designed": designed}, search=inputs, **results)
 

@@ -3,16 +3,14 @@
 from __future__ import annotations
 
 import argparse
-import csv
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from propmdao.commands.options import add_command
 from propmdao.commands.output.json_output import print_json
-from propmdao.commands.output.output_files import require_output
+from propmdao.commands.output.output_files import require_output, write_csv
 from propmdao.commands.output.warning_lines import warning_lines
-from propmdao.runtime.output_files import replacing
 
 if TYPE_CHECKING:
     from propmdao.analysis.wopwop.foreign_case import CaseResult
@@ -155,30 +153,30 @@ def write_pressure_csv(path: Path, results: Sequence[CaseResult]) -> None:
     ValueError
         If the file cannot be written.
     """
-    with replacing(path) as file, file.open("w", newline="", encoding="utf-8") as stream:
-        out = csv.writer(stream)
-        out.writerow(
-            "case title observer time_s x_m y_m z_m thickness_pa loading_pa total_pa".split()
-        )
-        for result in results:
-            p = result.pressure
-            for i in range(len(p.time)):
-                rows = zip(
-                    p.time[i], *p.position[i].T, p.thickness[i], p.loading[i], p.total[i],
-                    strict=True,
-                )  # fmt: skip
-                for row in rows:
-                    out.writerow([result.case, result.observers, i + 1, *map(float, row)])
+    heads = "case title observer time_s x_m y_m z_m thickness_pa loading_pa total_pa".split()
+    write_csv(path, heads, _pressure_rows(results))
+
+
+def _pressure_rows(results: Sequence[CaseResult]) -> Iterator[list[Any]]:
+    """Cells of `write_pressure_csv`, one row after the other: there are many."""
+    for result in results:
+        p = result.pressure
+        for i in range(len(p.time)):
+            rows = zip(
+                p.time[i], *p.position[i].T, p.thickness[i], p.loading[i], p.total[i], strict=True
+            )
+            for row in rows:
+                yield [result.case, result.observers, i + 1, *map(float, row)]
 
 
 def _print(groups: Sequence[dict[str, Any]]) -> None:
-    from rich import box
     from rich.table import Table
 
+    from propmdao.commands.output.tables import level_cell, narrow_table
     from propmdao.runtime.terminal import plain_console, printable
 
     def table(*headings: str) -> Table:
-        made = Table(box=box.SIMPLE, pad_edge=False, collapse_padding=True)
+        made = narrow_table()
         for heading in headings:
             made.add_column(heading, justify="right", overflow="fold")
         return made
@@ -203,7 +201,7 @@ def _print(groups: Sequence[dict[str, Any]]) -> None:
             overall.add_row(
                 str(observer["observer"]),
                 *map(_metres, observer["position"]),
-                *(_level(observer[key]) for key in keys),
+                *(level_cell(observer[key]) for key in keys),
                 "-" if loudest is None else f"{loudest['frequency_hz']:.1f}",
             )
         console.print(overall)
@@ -211,7 +209,7 @@ def _print(groups: Sequence[dict[str, Any]]) -> None:
         peaks = table("tone\nHz", "thickness\ndB", "loading\ndB", "total\ndB")
         for peak in top["peaks"]:
             frequency, *peak_levels = peak.values()
-            peaks.add_row(f"{frequency:.1f}", *map(_level, peak_levels))
+            peaks.add_row(f"{frequency:.1f}", *map(level_cell, peak_levels))
         console.print(f"Tones at observer {top['observer']}, the loudest:", highlight=False)
         console.print(peaks)
 
@@ -223,8 +221,3 @@ def _loudness(peak: dict[str, float]) -> float:
 def _metres(value: float) -> str:
     # Tenths of a millimetre: what rounding leaves of a sine or cosine is 0.
     return f"{round(value, 4) + 0.0:.5g}"
-
-
-def _level(value: float) -> str:
-    # Silence is -200 dB.
-    return f"{value:.1f}" if value > -199.0 else "-"

@@ -77,9 +77,9 @@ def _list(options: argparse.Namespace) -> None:
         keys = ("name", "diameter", "n_blades", "source")
         print_json([{key: getattr(propeller, key) for key in keys} for propeller in propellers])
     else:
-        from propmdao.commands import report
+        from propmdao.commands.inventory.inventory_report import print_catalog
 
-        report.print_catalog(propellers)
+        print_catalog(propellers)
 
 
 def _show(options: argparse.Namespace) -> None:
@@ -96,10 +96,11 @@ def _show(options: argparse.Namespace) -> None:
     if options.json:
         print_json(described)
         return
-    from propmdao.commands import report
+    from propmdao.commands.inventory.inventory_report import print_propeller
+    from propmdao.commands.report import print_files
 
-    report.print_propeller(described)
-    report.print_files(described)
+    print_propeller(described)
+    print_files(described)
 
 
 def _described(propeller: Propeller) -> dict[str, Any]:

@@ -78,9 +78,9 @@ def _doctor(options: argparse.Namespace) -> None:
     if options.json:
         print_json(installation)
         return
-    from propmdao.commands import report
+    from propmdao.commands.inventory.inventory_report import print_installation
 
-    report.print_installation(installation)
+    print_installation(installation)
 
 
 def _check() -> dict[str, Any]:

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-import csv
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -12,8 +11,8 @@ import numpy as np
 from propmdao.acoustics.levels.bands import bands_in_bins, tones_in_bins
 from propmdao.acoustics.levels.decibels import REFERENCE_PRESSURE, level_db
 from propmdao.acoustics.levels.weighting import a_weighting
+from propmdao.commands.output.output_files import write_csv
 from propmdao.records.quantities import BROADBAND_LEVELS, LEVELS, RESULTS
-from propmdao.runtime.output_files import replacing
 
 Result = Mapping[str, Any]
 #: Width of the bins of narrowband spectra [Hz], and the highest of them.
@@ -51,7 +50,7 @@ def write_levels(path: Path, results: Sequence[Result]) -> None:
         for number, observer in enumerate(result["observers"] or [{}], start=1):
             place = {"observer": number, **observer} if observer else {}
             rows.append([(point | place).get(name) for name in units])
-    _write(path, [_head(name, unit) for name, unit in units.items()], rows)
+    write_csv(path, [_head(name, unit) for name, unit in units.items()], rows)
 
 
 def write_spectra(path: Path, results: Sequence[Result]) -> None:
@@ -81,7 +80,7 @@ def write_spectra(path: Path, results: Sequence[Result]) -> None:
                 for line in lines:
                     shown = {**same, "spectrum": spectrum, **line}
                     rows.append([shown.get(name) for name in units])
-    _write(path, [_head(name, unit) for name, unit in units.items()], rows)
+    write_csv(path, [_head(name, unit) for name, unit in units.items()], rows)
 
 
 def _spectra(observer: Result) -> dict[str, list[dict[str, float]]]:
@@ -131,10 +130,3 @@ def _mean_square(levels_db: np.ndarray) -> np.ndarray:
 def _head(name: str, unit: str) -> str:
     unit = unit.replace("N*m", "N m")
     return f"{name} [{unit}]" if unit else name
-
-
-def _write(path: Path, heads: Iterable[str], rows: Iterable[Sequence[Any]]) -> None:
-    with replacing(path) as file, file.open("w", newline="", encoding="utf-8") as stream:
-        writer = csv.writer(stream)
-        writer.writerow(heads)
-        writer.writerows(rows)

@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import contextlib
+import csv
 import importlib.util
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from propmdao.runtime.output_files import (
     OutputError,
+    replacing,
     replacing_in,
     require_folder,
     require_writable,
@@ -78,6 +80,29 @@ def require_matplotlib(option: str) -> None:
     """
     if importlib.util.find_spec("matplotlib") is None:
         raise ValueError(f"{option} needs matplotlib: pip install 'propmdao[plots]'")
+
+
+def write_csv(path: Path, heads: Iterable[str], rows: Iterable[Iterable[Any]]) -> None:
+    """Write a table as a CSV file.
+
+    Parameters
+    ----------
+    path : Path
+        CSV file to write or replace.
+    heads : iterable of str
+        Heads of the columns.
+    rows : iterable of iterable
+        Cells of each row.
+
+    Raises
+    ------
+    OutputError
+        If the file cannot be written.
+    """
+    with replacing(path) as file, file.open("w", newline="", encoding="utf-8") as stream:
+        writer = csv.writer(stream)
+        writer.writerow(heads)
+        writer.writerows(rows)
 
 
 def save_figures(folder: Path, figures: Mapping[str, Figure]) -> list[str]:

@@ -1,14 +1,23 @@
-"""What a command tells of its way: lines on stderr, as log records of the logger ``propmdao``."""
+"""What a command tells of its way, on stderr.
+
+Lines are log records of the logger ``propmdao``; a march in time has one line that is overwritten.
+``--quiet`` leaves out both.
+"""
 
 from __future__ import annotations
 
 import contextlib
 import logging
+import math
 import sys
 import threading
 from collections.abc import Iterator
+from typing import TYPE_CHECKING
 
 from propmdao.runtime.terminal import print_line
+
+if TYPE_CHECKING:
+    from propmdao.aerodynamics.solutions.marching.marched_loads import MarchProgress, Progress
 
 _PATIENCE = 2.0  # s
 LOGGER = logging.getLogger("propmdao")
@@ -64,3 +73,45 @@ def telling_of_long_work(name: str) -> Iterator[None]:
         yield
     finally:
         timer.cancel()
+
+
+def progress_line() -> Progress | None:
+    """Show a march on one line of standard error, overwritten step by step.
+
+    Returns
+    -------
+    callable or None
+        To be called after every step; None where nobody looks: standard error is no terminal, or
+        progress is left out.
+    """
+    stream = sys.stderr
+    if stream is None or not stream.isatty() or not LOGGER.isEnabledFor(logging.INFO):
+        return None
+
+    def show(march: MarchProgress) -> None:
+        text = progress_text(march)
+        end = "\n" if march.step == march.n_steps else ""
+        print(f"\r{text:<78}", end=end, file=stream, flush=True)
+
+    return show
+
+
+def progress_text(march: MarchProgress) -> str:
+    """How far a march is, in words.
+
+    Parameters
+    ----------
+    march : MarchProgress
+        Where it is.
+
+    Returns
+    -------
+    str
+        Steps, thrust, time left and memory.
+    """
+    left = march.seconds_left
+    time = "" if math.isnan(left) else f", {left:.0f} s left"
+    return (
+        f"step {march.step} of {march.n_steps}, CT {march.CT:.4f}{time},"
+        f" {march.memory / 2**20:.0f} MiB"
+    )

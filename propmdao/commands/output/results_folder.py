@@ -8,7 +8,6 @@ import json
 import platform
 import shlex
 from collections.abc import Mapping
-from importlib import metadata
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -30,6 +29,8 @@ def versions() -> dict[str, str]:
     dict of str to str
         propmdao, Python and the libraries by name.
     """
+    from importlib import metadata  # slow to import
+
     known = {"propmdao": propmdao.__version__, "python": platform.python_version()}
     return known | {name: metadata.version(name) for name in _LIBRARIES}
 

@@ -5,14 +5,11 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
-import numpy as np
-
 from propmdao.acoustics.kinematics.observers import directions
 from propmdao.analysis.results import Analysis
 from propmdao.figures.blades import blade_comparison
 from propmdao.figures.designs.spectra_over_each_other import spectra_over_each_other
-from propmdao.figures.directivity import directivity
-from propmdao.figures.of_analysis import analysis_sound, observer_groups
+from propmdao.figures.of_analysis import analysis_sound, arc_diagram, observer_groups
 from propmdao.figures.sound import source_levels
 from propmdao.figures.style import LEVEL, LEVEL_DBA
 
@@ -60,21 +57,18 @@ def compared_figures(
         f" {seen.radius[observer]:.4g} m"
     )
     figures["spectra"] = spectra_over_each_other(sounds, observer, title)
-    number = 0
-    for kind, members in observer_groups(first.listening):
-        elevation, rising = np.unique(seen.elevation_deg[members], return_index=True)
-        if kind != "arc" or elevation.size < 3:
-            continue
-        number += 1
-        suffix = "" if number == 1 else f"_{number}"
-        for name, a_weighted in (("directivity", False), ("directivity_dba", True)):
-            levels = {
-                propeller: source_levels(sound, a_weighted)["total"][members][rising]
-                for propeller, sound in sounds.items()
-            }
-            figures[f"{name}{suffix}"] = directivity(
-                elevation, levels,
-                label=f"OASPL, {LEVEL_DBA if a_weighted else LEVEL}",
-                title=f"{parts}; {seen.radius[members][0]:.4g} m",
-            )  # fmt: skip
+    arcs = [members for kind, members in observer_groups(first.listening) if kind == "arc"]
+    for name, a_weighted in (("directivity", False), ("directivity_dba", True)):
+        label = f"OASPL, {LEVEL_DBA if a_weighted else LEVEL}"
+        levels = {
+            propeller: source_levels(sound, a_weighted)["total"]
+            for propeller, sound in sounds.items()
+        }
+        number = 0
+        for members in arcs:
+            here = {propeller: level[members] for propeller, level in levels.items()}
+            figure = arc_diagram(positions[members], here, label, parts)
+            if figure is not None:
+                number += 1
+                figures[name if number == 1 else f"{name}_{number}"] = figure
     return figures

@@ -8,7 +8,15 @@ from typing import TYPE_CHECKING
 import numpy as np
 import numpy.typing as npt
 
-from propmdao.figures.style import GRID, RUN_COLORS, line_colors, line_styles, literal, page
+from propmdao.figures.style import (
+    GRID,
+    RUN_COLORS,
+    headline,
+    line_colors,
+    line_styles,
+    literal,
+    page,
+)
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -61,7 +69,7 @@ def history(
     below.set(yscale="log", ylabel="largest constraint violation, scaled",
               xlabel="designs evaluated")  # fmt: skip
     above.set_ylabel(label)
-    figure.suptitle(literal(title), x=0.02, ha="left", fontsize="medium")
+    headline(figure, title)
     for axes in (above, below):
         axes.grid(**GRID)
         axes.set_axisbelow(True)

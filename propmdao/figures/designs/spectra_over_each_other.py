@@ -7,11 +7,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from propmdao.acoustics.levels.bands import HALF_BAND, bands_in_bins, tones_in_bands
-from propmdao.acoustics.levels.decibels import level_db, mean_square, spl_db
+from propmdao.acoustics.levels.bands import bands_in_bins
+from propmdao.acoustics.levels.decibels import level_db, spl_db
 from propmdao.acoustics.levels.weighting import a_weighting
 from propmdao.analysis.self_noise import BANDS_HZ
-from propmdao.figures.sound import Sound, source_levels
+from propmdao.figures.sound import Sound, band_edges, band_levels, source_levels
 from propmdao.figures.spectra import frequency_axis
 from propmdao.figures.style import (
     GRID,
@@ -20,6 +20,7 @@ from propmdao.figures.style import (
     LOWEST_LEVEL,
     MARKERS,
     Floats,
+    headline,
     line_colors,
     line_styles,
     literal,
@@ -70,7 +71,7 @@ def spectra_over_each_other(
             levels[f"{name}: {overall:.1f} {unit}"] = bands
         _draw_bands(axes, levels, list(lines.values()))
         axes.set_ylabel(f"third octaves, {LEVEL_DBA if a_weighted else LEVEL}")
-    figure.suptitle(literal(title), x=0.02, ha="left", fontsize="medium")
+    headline(figure, title)
     frequency_axis(rows[-1])
     return figure
 
@@ -108,7 +109,7 @@ def _draw_tones_and_noise(
 def _draw_bands(axes: Any, levels: Mapping[str, Floats], lines: list[dict[str, Any]]) -> None:
     """Steps of band levels."""
     floor = _scale(axes, list(levels.values()))
-    edges = np.append(BANDS_HZ / HALF_BAND, BANDS_HZ[-1] * HALF_BAND)
+    edges = band_edges(BANDS_HZ)
     for line, (name, level) in zip(lines, levels.items(), strict=True):
         if np.max(level) > floor:
             axes.stairs(
@@ -138,8 +139,7 @@ def _legend_or_silence(axes: Any) -> None:
 
 def _bands(sound: Sound, observer: int) -> Floats:
     """Third octaves of tones and of broadband noise, if there is any [dB]."""
-    tones = mean_square(sound.tones.total[observer])
-    power = np.asarray(tones_in_bands(sound.tones.frequency_hz, tones, BANDS_HZ))
-    if sound.has_broadband:
-        power = power + sound.broadband[observer]
-    return np.asarray(level_db(power))
+    if not sound.has_broadband:
+        silence = np.zeros((len(sound.tones.total), BANDS_HZ.size))
+        sound = Sound(sound.tones, BANDS_HZ, silence)
+    return band_levels(sound, observer)

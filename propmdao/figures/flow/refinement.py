@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy.typing as npt
 
-from propmdao.figures.style import GRID, LINE_STYLES, RUN_COLORS, literal, page
+from propmdao.figures.style import GRID, LINE_STYLES, RUN_COLORS, headline, literal, page
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -54,5 +54,5 @@ def refinement(
     if any(next(iter(panels.values()))):
         figure.legend(*rows[0].get_legend_handles_labels(), loc="outside upper right", ncols=4)
     rows[-1].set_xlabel(label)
-    figure.suptitle(literal(title), ha="left", x=0.02, fontsize="medium")
+    headline(figure, title)
     return figure

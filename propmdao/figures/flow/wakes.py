@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import numpy.typing as npt
 
-from propmdao.figures.style import GRID, RUN_COLORS, Floats, literal, page
+from propmdao.figures.style import GRID, RUN_COLORS, Floats, headline, literal, page
 from propmdao.runtime.output_files import replacing
 
 if TYPE_CHECKING:
@@ -113,7 +113,7 @@ def _prepared(moments: Floats, title: str) -> tuple[Figure, Callable[[Floats, st
         axes.grid(**GRID)
         lines += _lines(axes, n_blades, n_filaments, up)
     views[1].set_xlabel("x/R, flight to the right")
-    text = figure.suptitle(literal(title), ha="left", x=0.02, fontsize="medium")
+    text = headline(figure, title)
 
     def draw(nodes: Floats, heading: str) -> None:
         text.set_text(literal(heading))

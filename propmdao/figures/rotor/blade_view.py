@@ -6,7 +6,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from propmdao.figures.style import Floats, literal, page
+from propmdao.aerodynamics.lattice.rings import turned
+from propmdao.figures.style import literal, page
 from propmdao.geometry.meshes import propeller_surface
 from propmdao.propeller.description import Propeller
 
@@ -32,7 +33,7 @@ def blade_view(propeller: Propeller, title: str = "") -> Figure:
     Figure
         The figure: z toward thrust, blade 1 along x, rotation from x to y.
     """
-    points = 1e3 * np.asarray(propeller_surface(propeller, _N_CONTOUR, _N_SPAN))
+    points = 1e3 * propeller_surface(propeller, _N_CONTOUR, _N_SPAN)
     # Axes in space fill the smaller side of their place, so each has a square of the page's width,
     # which reaches out of the page and over the other's.
     figure = page(8.0, layout=None)
@@ -42,9 +43,11 @@ def blade_view(propeller: Propeller, title: str = "") -> Figure:
     ]
     above, tip = both
     n_blades = int(propeller.n_blades)
-    turned = [_turned(points, 2.0 * np.pi * number / n_blades) for number in range(n_blades)]
+    azimuths = 2.0 * np.pi * np.arange(n_blades) / n_blades
+    on_blades = np.asarray(turned(points.reshape(-1, 3), azimuths))
+    all_blades = on_blades.reshape(n_blades, *points.shape)
     arrow = 0.15e3 * propeller.diameter
-    for axes, blades in ((above, turned), (tip, turned[:1])):
+    for axes, blades in ((above, all_blades), (tip, all_blades[:1])):
         for blade in blades:
             axes.plot_surface(
                 *np.moveaxis(blade, -1, 0), color="#56B4E9", edgecolor="0.3", linewidth=0.1,
@@ -70,10 +73,3 @@ def blade_view(propeller: Propeller, title: str = "") -> Figure:
     figure.text(0.02, 0.97, literal(title), va="top")
     figure.text(0.02, 0.06, "blade 1, leading edge behind")
     return figure
-
-
-def _turned(points: Floats, angle: float) -> Floats:
-    """Points turned about z."""
-    turn = np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])
-    turned: Floats = np.concatenate([points[..., :2] @ turn.T, points[..., 2:]], axis=-1)
-    return turned

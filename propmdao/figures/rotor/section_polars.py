@@ -14,7 +14,7 @@ from propmdao.aerodynamics.sections.polars.table import (
     section_curves,
 )
 from propmdao.analysis.results import Analysis
-from propmdao.figures.style import GRID, LINE_STYLES, RUN_COLORS, Floats, literal, page
+from propmdao.figures.style import GRID, LINE_STYLES, RUN_COLORS, Floats, headline, page
 from propmdao.geometry.blade import Blade, span_interpolation
 
 if TYPE_CHECKING:
@@ -72,7 +72,7 @@ def section_polars(analysis: Analysis, polars: SectionPolars, title: str = "") -
     right.set(xlabel="drag coefficient", xlim=(0.0, 1.1 * max(0.08, float(drag.max()))))
     for axes in (left, right):
         axes.grid(**GRID)
-    figure.suptitle(literal(title), x=0.02, ha="left", fontsize="medium")
+    headline(figure, title)
     figure.legend(*left.get_legend_handles_labels(), loc="outside lower center", ncols=2)
     return figure
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from propmdao.analysis.results import Analysis
-from propmdao.figures.style import GRID, Floats, literal, page
+from propmdao.figures.style import GRID, Floats, headline, page
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -52,7 +52,7 @@ def span_loads(analysis: Analysis, title: str = "") -> Figure:
     for axes in grid[-1]:
         axes.set_xlabel("r/R")
     figure.align_ylabels(grid)
-    figure.suptitle(literal(title), x=0.02, ha="left", fontsize="medium")
+    headline(figure, title)
     return figure
 
 

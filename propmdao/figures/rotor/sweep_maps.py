@@ -7,15 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from propmdao.figures.style import (
-    GRID,
-    LINE_STYLES,
-    MARKERS,
-    RUN_COLORS,
-    Floats,
-    literal,
-    page,
-)
+from propmdao.figures.style import GRID, LINE_STYLES, MARKERS, RUN_COLORS, Floats, headline, page
 from propmdao.records.quantities import VARIABLES
 
 if TYPE_CHECKING:
@@ -111,7 +103,7 @@ def sweep_maps(rows: Rows, columns: Sequence[str], title: str = "") -> Figure:
         axes.grid(**GRID)
     for axes in grid[-1]:
         axes.set_xlabel(_label(first))
-    figure.suptitle(literal(title), x=0.02, ha="left", fontsize="medium")
+    headline(figure, title)
     if 1 < len(others) <= _MOST_LINES:
         figure.legend(*grid[0, 0].get_legend_handles_labels(), loc="outside lower center", ncols=3)
     return figure

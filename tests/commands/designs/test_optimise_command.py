@@ -114,6 +114,7 @@ def test_evolution_is_polished_and_resumes(
         ("--thrust 2 --results r --also-at -1 0", "thrust must be within"),
         ("--thrust 2 --results r/x/record.json", "is a file, not a folder"),
         ("--thrust 2 --results r/x --minimise power", "its record.json is of no search"),
+        (f"--thrust 2 --results r --minimise power --name {PROPELLER}", "give another one"),
     ],
 )
 def test_bad_input_is_refused_in_one_line_before_the_work(

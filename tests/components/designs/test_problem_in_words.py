@@ -121,6 +121,18 @@ def test_two_points_share_a_blade_that_needs_less_power_in_the_mean(propeller, s
         assert_allclose(float(again.loads.torque), torque, rtol=1e-6)
 
 
+def test_the_mach_number_of_the_tip_is_known_where_nothing_else_takes_the_speed_of_sound(
+    propeller, small
+):
+    cold = dataclasses.replace(POINT, air=pm.Air(sound_speed=320.0))
+    prob = design_problem(
+        propeller, cold, minimise="torque", limits={"tip-mach": 0.3}, viscous=False, fidelity=small
+    )
+    prob.run_model()
+    turns = prob.get_val("rpm")[0] / 60.0
+    assert_allclose(prob.get_val("tip_mach"), np.pi * propeller.diameter * turns / 320.0)
+
+
 @pytest.mark.parametrize(
     ("given", "message"),
     [

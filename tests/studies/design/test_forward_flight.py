@@ -27,7 +27,7 @@ def test_the_blade_is_quieter_on_average_at_no_more_power(study, around, tmp_pat
     assert prob.get_val("level")[0] < first - 0.5
     assert search.history.violation[-1] < 1e-3
     assert_allclose(prob.get_val("thrust"), study.THRUST, rtol=1e-6)
-    blades = {"start": start, "optimum": study.designed(start, prob)}
+    blades = {"start": start, "optimum": study.designed_blade(prob, "optimum")}
     analyses = {name: study.evaluate(blade, around) for name, blade in blades.items()}
     for k, analysis in enumerate(analyses["optimum"]):
         found = study.column(analysis)
@@ -39,5 +39,7 @@ def test_the_blade_is_quieter_on_average_at_no_more_power(study, around, tmp_pat
             rtol=0.0,
             atol=1e-4,
         )
+    study.tabulate(analyses, tmp_path)
+    assert {file.stem for file in tmp_path.glob("*.csv")} == set(study.POINTS)
     study.draw(blades, analyses, tmp_path)
     assert len(list(tmp_path.glob("*.png"))) == 3

@@ -13,7 +13,6 @@ from propmdao.aerodynamics.solutions.case import RotorCase
 from propmdao.aerodynamics.solutions.marching.step import (
     MarchedLattice,
     StepLoads,
-    load_positions,
 )
 from propmdao.aerodynamics.solutions.period.loads import PeriodBladeLoads, turn_derivative
 from propmdao.aerodynamics.solutions.periodic import (
@@ -63,7 +62,7 @@ def mean_loads(
     on_rings = slice(-rings[1] - n_panels, -rings[1])
     loads = PeriodBladeLoads(
         mean.circulation.reshape(-1, *rings),
-        load_positions(lattice),
+        lattice.period.load_positions,
         mean.force.at[:, on_rings].set(case.state.air.density * unsteady),
         dataclasses.replace(mean.sections, residual=residual),
         mean.recambering,

@@ -11,8 +11,7 @@ from jax import Array
 
 from propmdao.aerodynamics.lattice.rings import (
     BOUND_CORE,
-    bound_segments,
-    chordwise_segments,
+    ring_segments,
     segment_circulation,
     turned,
 )
@@ -22,13 +21,12 @@ from propmdao.aerodynamics.solutions.marching.step import (
     MarchedLattice,
     Past,
     StepLoads,
-    load_positions,
     marched_lattice,
     seen_from_each,
     step_loads,
 )
 from propmdao.aerodynamics.solutions.period.lattice import period_lattice
-from propmdao.aerodynamics.solutions.period.loads import tilted_onset
+from propmdao.aerodynamics.solutions.period.onset import tilted_onset
 from propmdao.aerodynamics.vortices.cores import core_radius, middles
 from propmdao.aerodynamics.wakes.free import (
     FreeFilaments,
@@ -262,7 +260,7 @@ def advance(
     medium = flow.timestep, rotor_state.air, case.sections
     loads = step_loads(
         flow.lattice,
-        _sheets(flow, state, azimuths),
+        _sheets(flow, state.free, w, azimuths),
         flow.parts,
         lag,
         onset,
@@ -276,7 +274,7 @@ def advance(
     )
     copies = rotor.n_blades // flow.n_marched
     force = loads.force
-    moment = jnp.cross(load_positions(flow.lattice), force)
+    moment = jnp.cross(period.load_positions, force)
     thrust, torque = copies * force[..., 2].sum(), -copies * moment[..., 2].sum()
     window = jnp.concatenate([thrust[None], state.thrust[:-1]])
     free, extent = None, jnp.asarray(0.0)
@@ -312,21 +310,9 @@ def _moved_wake(
         return seen_from_each(marched, n_blades)[0]
 
     nodes = placed(free.edge, of_all(wake.displacement), free.ages, azimuth, state)
-    (root, tip), (ahead, behind) = bound_segments(rings), chordwise_segments(rings)
-    start, end = (
-        turned(jnp.concatenate([b.reshape(-1, 3), c.reshape(-1, 3)]), case.rotor.azimuths)
-        for b, c in ((root, ahead), (tip, behind))
-    )
-
-    def strength(of_rings: Array) -> Array:
-        along = segment_circulation(of_rings.reshape(nc, ns))
-        return jnp.concatenate([part.ravel() for part in along])
-
-    bound = (
-        start.reshape(-1, 3),
-        end.reshape(-1, 3),
-        jax.vmap(strength)(of_all(circulation)).ravel(),
-    )
+    start, end = (turned(ends, case.rotor.azimuths).reshape(-1, 3) for ends in ring_segments(rings))
+    strength = jax.vmap(segment_circulation)(of_all(circulation).reshape(n_blades, nc, ns))
+    bound = start, end, strength.ravel()
     of_strips = of_all(strips.swapaxes(0, 1)).swapaxes(0, 1)
     lag = middles(free.ages) / state.rotation_speed / flow.timestep
     velocity = induced_at_nodes(free, nodes, of_strips, lag, bound, state, flow.n_marched)
@@ -346,25 +332,23 @@ def _azimuths(flow: MarchFlow, azimuth: Scalar) -> Array:
     return azimuth + jnp.asarray(flow.case.rotor.azimuths[: flow.n_marched])
 
 
-def _sheets(flow: MarchFlow, state: MarchState, azimuths: Array) -> Sheets:
+def _sheets(flow: MarchFlow, free: FreeWakeState | None, w: Array, azimuths: Array) -> Sheets:
     """Wake of all blades, seen from each blade that is marched."""
     case, rotor_state = flow.case, flow.case.state
     ages, m = jnp.asarray(case.wake.ages), azimuths.size
     edge = flow.lattice.period.lattice.rings.corner[-1]
     if flow.free is None:
-        w = _induced_velocity(case, state.thrust)
         helix = helical_wake(edge, case.wake, case.rotor, rotor_state, w)
         nodes = helix + sideways_drift(ages, azimuths, rotor_state)[:, None, None]
     else:
-        assert state.free is not None
-        displacement = lattice_displacement(flow.free, state.free, ages)
+        assert free is not None
+        displacement = lattice_displacement(flow.free, free, ages)
         nodes = jax.vmap(lambda seen, azimuth: placed(edge, seen, ages, azimuth, rotor_state))(
             seen_from_each(displacement, case.rotor.n_blades), azimuths
         )
 
     def core(at: Array) -> Array:
-        viscosity, initial = rotor_state.air.kinematic_viscosity, BOUND_CORE * case.rotor.radius
-        radius = core_radius(at, rotor_state.rotation_speed, viscosity, initial)
+        radius = core_radius(at, rotor_state, BOUND_CORE * case.rotor.radius)
         return jnp.broadcast_to(radius, (m, radius.size))
 
     return Sheets(nodes, core(middles(ages)), core(ages[:-1]))
@@ -388,5 +372,6 @@ def resting_wake(flow: MarchFlow, state: MarchState, azimuth: Scalar) -> Array:
     (n_blades, n_filaments, n_nodes, 3) array
         Nodes of the lattice's filaments [m].
     """
-    nodes = _sheets(flow, state, _azimuths(flow, azimuth)).nodes[0]
+    w = _induced_velocity(flow.case, state.thrust)
+    nodes = _sheets(flow, state.free, w, _azimuths(flow, azimuth)).nodes[0]
     return spun(nodes, jnp.asarray(azimuth)).swapaxes(0, 1)

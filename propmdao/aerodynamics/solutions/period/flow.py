@@ -12,12 +12,8 @@ from propmdao.aerodynamics.solutions.period.lattice import (
     PeriodWake,
     period_lattice,
 )
-from propmdao.aerodynamics.solutions.period.loads import (
-    PeriodBladeLoads,
-    azimuths_of,
-    period_loads,
-    tilted_onset,
-)
+from propmdao.aerodynamics.solutions.period.loads import PeriodBladeLoads, period_loads
+from propmdao.aerodynamics.solutions.period.onset import azimuths_of, tilted_onset
 from propmdao.aerodynamics.vortices.cores import core_radius, middles
 from propmdao.aerodynamics.wakes.helical import helical_wake
 from propmdao.aerodynamics.wakes.history import shedding_delay
@@ -113,11 +109,7 @@ def loads_at(
     case, lattice, n = flow.case, flow.lattice, flow.n_azimuths
     rotor, state = case.rotor, case.state
     edge, ages = lattice.lattice.rings.corner[-1], jnp.asarray(case.wake.ages)
-
-    def core(at: Array) -> Array:
-        viscosity, initial = state.air.kinematic_viscosity, BOUND_CORE * rotor.radius
-        return core_radius(at, state.rotation_speed, viscosity, initial)
-
+    core = BOUND_CORE * rotor.radius
     azimuths = jnp.asarray(azimuths_of(n))
     onset = tilted_onset(lattice.lattice, state, induced_velocity, azimuths)
     step = onset.mean_speed * ages[1] / state.rotation_speed
@@ -127,8 +119,8 @@ def loads_at(
         drift=sideways_drift(ages, azimuths, state),
         ages=ages,
         delay=delay,
-        trailing_core=core(middles(ages)),
-        shed_core=core(ages[:-1]),
+        trailing_core=core_radius(middles(ages), state, core),
+        shed_core=core_radius(ages[:-1], state, core),
     )
     return period_loads(lattice, wake, onset, state.rotation_speed, state.air, case.sections, start)
 

@@ -18,10 +18,12 @@ from jax import Array
 from propmdao.aerodynamics.lattice.rings import BOUND_CORE, blade_influence
 from propmdao.aerodynamics.rotor_geometry import RotorGeometry
 from propmdao.aerodynamics.solutions.lattice_loads import LatticeGeometry, lattice_geometry
-from propmdao.aerodynamics.vortices.biot_savart import segment_normalwash, summed_velocities
+from propmdao.aerodynamics.vortices.biot_savart import segment_normalwash
 from propmdao.aerodynamics.wakes.history import history_weights
+from propmdao.aerodynamics.wakes.sheets import velocities_of_strips
 from propmdao.geometry.lattice import strip_middle
 from propmdao.records.pytrees import record
+from propmdao.runtime import linear_algebra
 
 
 @record
@@ -46,6 +48,12 @@ class PeriodLattice:
     ring_area: Array
     ring_middle: Array
     last_panel: Array
+
+    @property
+    def load_positions(self) -> Array:
+        """Points at which forces act: segments, middles of the rings, sections, (n, 3) [m]."""
+        segments = self.lattice.points[self.ring_middle.shape[0] :]
+        return jnp.concatenate([segments, self.ring_middle, self.lattice.strips.quarter_chord])
 
 
 @record
@@ -146,7 +154,7 @@ def at_the_blades(of_azimuth: Array, n_blades: int) -> Array:
     return jnp.stack([jnp.roll(of_azimuth, -step * b, axis=0) for b in range(n_blades)])
 
 
-def bound_inverse(normalwash: Array) -> Array:
+def bound_inverse(lattice: PeriodLattice) -> Array:
     """Circulation of the rings per normalwash on the blades, wake left out.
 
     The blades are alike, so their equations are circulant, and a Fourier transform over the blades
@@ -154,8 +162,8 @@ def bound_inverse(normalwash: Array) -> Array:
 
     Parameters
     ----------
-    normalwash : (n_blades, n_panels, n_panels) array
-        Normalwash at the panels of blade 1 (rows) per unit circulation of each blade's rings [1/m].
+    lattice : PeriodLattice
+        Lattice of blade 1.
 
     Returns
     -------
@@ -163,9 +171,13 @@ def bound_inverse(normalwash: Array) -> Array:
         Circulation of the rings of blade 1 (rows) per normalwash taken off at the panels of each
         blade [m].
     """
+    normal = lattice.lattice.rings.normal
+    on_panels = lattice.influence[..., : normal.shape[0]]
+    # At the panels of blade 1 (rows) per unit circulation of each blade's rings.
+    normalwash = jnp.einsum("bcrp,pc->bpr", on_panels, normal)
     n_blades = normalwash.shape[0]
     by_harmonic = n_blades * jnp.fft.ifft(normalwash, axis=0)
-    return jnp.fft.fft(jnp.linalg.inv(by_harmonic), axis=0).real / n_blades
+    return jnp.fft.fft(linear_algebra.inverse(by_harmonic), axis=0).real / n_blades
 
 
 def wake_normalwash(lattice: LatticeGeometry, wake: PeriodWake) -> Array:
@@ -230,30 +242,13 @@ def wake_velocities(points: Array, wake: PeriodWake, circulation: Array) -> Arra
     (n_azimuths, 3, n_points) array
         Velocity at each azimuth [m/s].
     """
-    (of_rings, of_shed), (trailing_core, shed_core) = wake.weights, wake.cores
+    of_rings, of_shed = wake.weights
     n_azimuths = of_rings.shape[1]
-
-    @jax.checkpoint
-    def of_filament(filament: tuple[Array, Array]) -> Array:
-        nodes, strength = filament
-        start, end = nodes[:, :-1].reshape(-1, 3), nodes[:, 1:].reshape(-1, 3)
-        return summed_velocities(points, start, end, trailing_core, strength)
-
-    @jax.checkpoint
-    def across_strip(strip: tuple[Array, Array, Array]) -> Array:
-        *nodes, strength = strip
-        start, end = (edge[:, :-1].reshape(-1, 3) for edge in nodes)
-        return summed_velocities(points, start, end, shed_core, strength)
 
     def at_azimuth(place: tuple[Array, Array]) -> Array:
         number, drift = place
         later = circulation[(jnp.arange(n_azimuths) + number) % n_azimuths]
-        ring = jnp.einsum("snc,ns->cs", of_rings, later)
-        change = jnp.einsum("snc,ns->cs", of_shed, later)
-        ring = jnp.pad(ring, ((0, 0), (1, 1)))
-        nodes = wake.nodes + drift
-        of_filaments = jax.lax.map(of_filament, (nodes, (ring[:, :-1] - ring[:, 1:]).T))
-        across = jax.lax.map(across_strip, (nodes[:-1], nodes[1:], change.T))
-        return of_filaments.sum(axis=0) + across.sum(axis=0)
+        ring, shed = (jnp.einsum("snc,ns->sc", of, later) for of in (of_rings, of_shed))
+        return velocities_of_strips(points, wake.nodes + drift, ring, shed, wake.cores)
 
     return jax.lax.map(at_azimuth, (jnp.arange(n_azimuths), wake.drift))

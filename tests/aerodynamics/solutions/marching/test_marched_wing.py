@@ -15,7 +15,7 @@ import numpy as np
 from propmdao.aerodynamics.rotor_geometry import RotorGeometry
 from propmdao.aerodynamics.solutions.marching.step import Past, marched_lattice, step_loads
 from propmdao.aerodynamics.solutions.period.lattice import period_lattice
-from propmdao.aerodynamics.solutions.period.loads import PeriodOnset
+from propmdao.aerodynamics.solutions.period.onset import PeriodOnset
 from propmdao.aerodynamics.vortices.cores import middles
 from propmdao.aerodynamics.wakes.ages import wake_azimuths
 from propmdao.aerodynamics.wakes.history import shedding_delay

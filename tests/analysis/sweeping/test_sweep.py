@@ -15,7 +15,8 @@ import numpy as np
 import pytest
 
 from propmdao.acoustics.kinematics.observers import arc, point
-from propmdao.analysis.sweeps import grid, sweep
+from propmdao.analysis.sweeping.points import grid
+from propmdao.analysis.sweeping.sweeps import sweep
 from propmdao.propeller.changes import Change
 from propmdao.propeller.description import Propeller
 from propmdao.records.air import Air

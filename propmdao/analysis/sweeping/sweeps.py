@@ -2,10 +2,6 @@
 
 from __future__ import annotations
 
-import csv
-import io
-import itertools
-import math
 import os
 import warnings
 from collections.abc import Iterable, Iterator, Mapping, Sequence
@@ -13,11 +9,11 @@ from contextlib import ExitStack, closing
 from functools import partial
 from typing import Any, Unpack
 
-from scipy.stats import qmc
 from tqdm import tqdm
 
 from propmdao.analysis.request import Asked, Request
-from propmdao.formats.result_table import ResultTable, table_files
+from propmdao.analysis.sweeping.points import N_POINTS, Point
+from propmdao.formats.result_table import STATUS, ResultTable, table_files
 from propmdao.propeller.description import Propeller
 from propmdao.propeller.identity import checksum
 from propmdao.records.models import Model
@@ -31,119 +27,16 @@ from propmdao.records.quantities import (
     require_asked,
 )
 from propmdao.records.units import Range
-from propmdao.runtime.input_files import read_text
 from propmdao.runtime.locks import locked
 from propmdao.runtime.output_files import make_folder, require_writable
 from propmdao.runtime.worker_processes import results_in_order, start_workers
 
-Point = dict[str, float]
-#: Points of a sweep: those of a day, with a table that fits memory.
-MOST_POINTS = 100_000
-_N_POINTS = Range(1, MOST_POINTS)
-_SEED = Range(0, 2**128)
 _N_WORKERS = Range(1, 256)
 
 
 _RESULTS = [name for name in ("rpm", *RESULTS) if name != "failure"]
 _RESULTS += [column for vector in HUB_LOADS.values() for column in vector.columns]
 _WARNINGS = "warnings"
-
-
-def grid(values: Mapping[str, Sequence[float]]) -> list[Point]:
-    """Every combination of values, the last variable changing first.
-
-    Parameters
-    ----------
-    values : mapping of str to sequence of float
-        Values by variable, keys of `VARIABLES`.
-
-    Returns
-    -------
-    list of dict
-        Points.
-
-    Raises
-    ------
-    ValueError
-        If there are more combinations than `MOST_POINTS`.
-    """
-    _N_POINTS.require("number of points", math.prod(map(len, values.values())))
-    return [dict(zip(values, point, strict=True)) for point in itertools.product(*values.values())]
-
-
-def latin_hypercube(
-    ranges: Mapping[str, tuple[float, float]], n_points: int, seed: int
-) -> list[Point]:
-    """Points that fill ranges evenly, each variable at as many values as there are points.
-
-    Parameters
-    ----------
-    ranges : mapping of str to (float, float)
-        Lowest and highest value by variable.
-    n_points : int
-        Number of points.
-    seed : int
-        Same seed, same points.
-
-    Returns
-    -------
-    list of dict
-        Points.
-
-    Raises
-    ------
-    ValueError
-        If there are more points than `MOST_POINTS`, or the seed is negative.
-    """
-    _N_POINTS.require("number of points", n_points)
-    _SEED.require("seed", seed)
-    sample = qmc.LatinHypercube(len(ranges), rng=seed).random(n_points)
-    lower, upper = zip(*ranges.values(), strict=True)
-    scaled = [
-        [low + u * (high - low) for u, low, high in zip(row, lower, upper, strict=True)]
-        for row in sample.tolist()
-    ]
-    return [dict(zip(ranges, row, strict=True)) for row in scaled]
-
-
-def read_points(path: str | os.PathLike[str]) -> list[Point]:
-    """Points of a CSV file whose header names variables.
-
-    Parameters
-    ----------
-    path : path
-        CSV file.
-
-    Returns
-    -------
-    list of dict
-        Points.
-
-    Raises
-    ------
-    ValueError
-        When there is no such file, a column is no variable or comes twice, or a cell is not a
-        number.
-    """
-    complaint = f"points cannot be read from '{path}'"
-    text = read_text(path, ValueError, complaint=complaint, encoding="utf-8-sig")
-    reader = csv.DictReader(io.StringIO(text))
-    names, rows = reader.fieldnames or [""], list(reader)
-    for name in names:
-        if name not in VARIABLES:
-            raise ValueError(
-                f"'{path}' has a column '{name}', which is no variable of a sweep; there are"
-                f" {', '.join(VARIABLES)}"
-            )
-        if names.count(name) > 1:
-            raise ValueError(f"'{path}', line 1: the column '{name}' is there more than once")
-    points = []
-    for number, row in enumerate(rows, start=2):
-        try:
-            points.append({name: float(row[name]) for name in row})
-        except (TypeError, ValueError):
-            raise ValueError(f"row {number} of '{path}' is not all numbers: {row}") from None
-    return points
 
 
 def sweep(
@@ -196,23 +89,16 @@ def sweep(
     csv_file, parquet_file = table_files(path)
     _N_WORKERS.require("number of workers", n_workers)
     points = list(points)
-    _N_POINTS.require("number of points", len(points))
+    N_POINTS.require("number of points", len(points))
     # Whatever is wrong with what all points share is said before the first of them.
     request = Request.of(rpm=0.0, **asked)
     if request.model.loads.elastic is not None:
         raise ValueError("points of a sweep have rigid blades: analyze elastic ones one by one")
     if request.model.loads.unsteady is not None:
         raise ValueError("points of a sweep are not marched in time: analyze them one by one")
-    same = _same_columns(request)
-    complete = [_complete(propeller, point) | same for point in points]
-    drives = {"rpm" if "rpm" in point else "thrust_required" for point in complete}
-    if len(drives) != 1:
-        raise ValueError("a sweep needs in all points rpm or in all thrust_required")
-    point_columns = list(complete[0])
+    complete = _complete_points(propeller, points, request)
     suffixes = _suffixes(request.listening.observers)
-    levels = [*LEVELS, *(BROADBAND_LEVELS if same["broadband"] else ())]
-    results = [name for name in _RESULTS if name not in point_columns]
-    results += [name + suffix for suffix in suffixes for name in levels] + [_WARNINGS]
+    point_columns, results = _columns(complete, suffixes)
     analysed = partial(_analysed, propeller, asked, suffixes)
     make_folder(csv_file.parent)
     with ExitStack() as stack:
@@ -231,6 +117,60 @@ def sweep(
         if parquet_file is not None:
             table.write_parquet(parquet_file)
     return len(new), table.failures(complete)
+
+
+def swept_rows(
+    propeller: Propeller,
+    points: Iterable[Point],
+    path: str | os.PathLike[str],
+    **asked: Unpack[Asked],
+) -> list[dict[str, str]]:
+    """Rows that a sweep has left of its points, those that have failed left out.
+
+    Parameters
+    ----------
+    propeller, points, path, **asked
+        The same as of `sweep`. The table may have rows of other points, blades and settings.
+
+    Returns
+    -------
+    list of dict
+        Cells by column.
+
+    Raises
+    ------
+    ValueError
+        If the file is of another sweep.
+    """
+    request = Request.of(rpm=0.0, **asked)
+    complete = _complete_points(propeller, points, request)
+    columns = _columns(complete, _suffixes(request.listening.observers))
+    table = ResultTable(table_files(path)[0], *columns)
+    rows = [table.row(point) for point in complete if point in table]
+    return [row for row in rows if row[STATUS] == "ok"]
+
+
+def _complete_points(
+    propeller: Propeller, points: Iterable[Point], request: Request
+) -> list[dict[str, Any]]:
+    """Points with a value in every column that tells them from others."""
+    same = _same_columns(request)
+    complete = [_complete(propeller, point) | same for point in points]
+    drives = {"rpm" if "rpm" in point else "thrust_required" for point in complete}
+    if len(drives) != 1:
+        raise ValueError("a sweep needs in all points rpm or in all thrust_required")
+    return complete
+
+
+def _columns(
+    complete: Sequence[Mapping[str, Any]], suffixes: Sequence[str]
+) -> tuple[list[str], list[str]]:
+    """Columns of points and of their results."""
+    point_columns = list(complete[0])
+    levels = [*LEVELS, *(BROADBAND_LEVELS if complete[0]["broadband"] else ())]
+    results = [name for name in _RESULTS if name not in point_columns]
+    results += [name + suffix for suffix in suffixes for name in levels] + [_WARNINGS]
+    return point_columns, results
 
 
 def _same_columns(request: Request) -> dict[str, Any]:

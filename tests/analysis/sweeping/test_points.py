@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from propmdao.analysis.sweeps import grid, latin_hypercube, read_points
+from propmdao.analysis.sweeping.points import grid, latin_hypercube, read_points
 
 
 def test_a_grid_is_every_combination() -> None:

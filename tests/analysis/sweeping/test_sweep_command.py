@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from propmdao.acoustics.kinematics.observers import arc
-from propmdao.analysis.sweeps import latin_hypercube
+from propmdao.analysis.sweeping.points import latin_hypercube
 from propmdao.commands.program import main
 from propmdao.propeller.changes import Change
 

@@ -1,11 +1,11 @@
-"""Lines of a command on stderr."""
+"""How far a command is, on stderr."""
 
 import io
 
 import pytest
 
 from propmdao.aerodynamics.solutions.marching.marched_loads import MarchProgress
-from propmdao.commands.output.warning_lines import progress_line, progress_text
+from propmdao.commands.output.progress import progress_line, progress_text, tell_progress
 
 BEGUN = MarchProgress(1, 144, 0.1, float("nan"), 80 * 2**20)
 
@@ -17,6 +17,7 @@ def test_a_march_shows_steps_thrust_time_left_and_memory():
 
 
 def test_the_line_is_overwritten_on_a_terminal_and_nowhere_else(monkeypatch: pytest.MonkeyPatch):
+    tell_progress(is_quiet=False)
     monkeypatch.setattr("sys.stderr", stream := io.StringIO())
     assert progress_line() is None
     monkeypatch.setattr(stream, "isatty", lambda: True)
@@ -26,3 +27,5 @@ def test_the_line_is_overwritten_on_a_terminal_and_nowhere_else(monkeypatch: pyt
     show(MarchProgress(144, 144, 0.1, 0.0, 80 * 2**20))
     first, second = stream.getvalue().split("\r")[1:]
     assert len(first) == 78 and second.endswith("\n")
+    tell_progress(is_quiet=True)
+    assert progress_line() is None

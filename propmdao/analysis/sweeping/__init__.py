@@ -1,0 +1,1 @@
+"""A propeller at many points: the points, and the table of their results."""
