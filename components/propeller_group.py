@@ -62,6 +62,9 @@ class PropellerGroup(om.Group):
         Density of the air, ``kg/m**3``.
     sound_speed : float
         Speed of sound, ``m/s``; not in inviscid flow without observers.
+    turbulence_intensity, turbulence_length_scale : float
+        Turbulence that flows in: root mean square of each component of the velocity, ``m/s``, and
+        longitudinal integral length scale, ``m``, with `turbulent_inflow`; 0 by default.
     thrust_required : float
         Thrust of all blades, ``N``, with `trim` "thrust".
     rpm : float
@@ -163,8 +166,7 @@ design_lift_coefficient : (n_stations,) arrays
         Boundary layers in broadband noise: of the blade's own sections (default), or the fits of
         NASA RP-1218 to a NACA 0012.
     turbulent_inflow : bool
-        Whether turbulence may flow in, with `broadband`: `turbulence_intensity`, ``m/s``, and
-        `turbulence_length_scale`, ``m``, are inputs then, 0 by default.
+        Whether turbulence may flow in, which `broadband` noise then hears.
     camber : {"camber_over_chord", "design_lift_coefficient"}
         Distribution that gives the camber; "camber_over_chord" is the default.
 
@@ -174,9 +176,10 @@ design_lift_coefficient : (n_stations,) arrays
         If there is no propeller of that name, or its file is wrong.
     ValueError
         If `observers` are no positions, `rpm_bounds` are not positive and rising, control points do
-        not fit the blade, or `broadband` is asked for without observers, `trip` without
-        `broadband`, a transition in inviscid flow or beside `polars`, `tilted` with the trim
-        "two_point", `unsteady` with a thrust, a march without `unsteady`, or one that cannot be.
+        not fit the blade, or `broadband` is asked for without observers, `trip` or
+        `turbulent_inflow` without `broadband`, a transition in inviscid flow or beside `polars`,
+        `tilted` with the trim "two_point", `unsteady` with a thrust, a march without `unsteady`, or
+        one that cannot be.
     om.AnalysisError
         If a component has no result; with `num_nodes` the message has the node.
     """

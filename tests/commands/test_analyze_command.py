@@ -18,7 +18,7 @@ from propmdao.acoustics.kinematics.observers import arc
 from propmdao.analysis.request import Request
 from propmdao.commands.program import main
 from propmdao.propeller.changes import Change
-from propmdao.records.air import Air
+from propmdao.records.air import Air, Turbulence
 from propmdao.records.fidelity import Marching
 from propmdao.records.listening import Surroundings
 from propmdao.records.models import (
@@ -49,12 +49,15 @@ def test_analyze_passes_on_what_was_asked(
 ) -> None:
     status = main(
         f"analyze {PROPELLER} --thrust 1.2 --speed 8 --rho 1.1 --twist-offset -1.5"
-        " --arc 1.905 -45 -.5 45 --arc 3 0 --broadband --trip heavy --ground 9 --json".split()
+        " --arc 1.905 -45 -.5 45 --arc 3 0 --broadband --trip heavy --ground 9 --json"
+        " --turbulence-intensity 0.5 --turbulence-length 0.05".split()
     )
     assert status == 0
     (asked,) = recorder.asked
     assert recorder.polars[0] is not None
-    assert asked.point == OperatingPoint(thrust=1.2, speed=8.0, air=Air(density=1.1))
+    assert asked.point == OperatingPoint(
+        thrust=1.2, speed=8.0, air=Air(density=1.1), turbulence=Turbulence(0.5, 0.05)
+    )
     assert asked.change == Change(twist_offset_deg=-1.5)
     assert asked.model == Model(noise=NoiseModel(SelfNoiseModel("heavy")))
     places = arc([1.905, 1.905, 1.905, 3.0], [-45.0, -0.5, 45.0, 0.0])
@@ -241,7 +244,10 @@ def test_keys_are_those_promised() -> None:
         " observers".split()
     )
     assert set(point["propeller"]) == {"name", "diameter", "n_blades", "checksum", "source"}
-    assert set(point["point"]) == {"rpm", "thrust", "speed", "incidence_deg", "air"}
+    assert set(point["point"]) == {
+        "rpm", "thrust", "speed", "incidence_deg", "air", "turbulence",
+    }  # fmt: skip
+    assert set(point["point"]["turbulence"]) == {"turbulence_intensity", "turbulence_length_scale"}
     assert set(point["point"]["air"]) == set(
         "rho sound_speed dynamic_viscosity temperature pressure relative_humidity".split()
     )

@@ -9,7 +9,7 @@ from propmdao.acoustics.kinematics.observers import arc
 from propmdao.acoustics.levels.weighting import a_weighting
 from propmdao.aerodynamics.sections.edge_layers.propeller_layers import layers_for
 from propmdao.analysis.self_noise import BANDS_HZ
-from propmdao.components import BroadbandComp
+from propmdao.components import BroadbandComp, PropellerGroup
 
 OBSERVERS = arc(1.9, [-45.0, -20.0])
 
@@ -130,6 +130,14 @@ def test_turbulence_that_flows_in(problem, problem_at):
     windy.run_model()
     twice = windy.get_val("broadband_mean_square_pressure") - calm
     assert_allclose(twice, 4.0 * once, rtol=1e-6)
+
+
+def test_a_group_hears_turbulence_as_broadband_noise_alone(propeller, small):
+    group = PropellerGroup(
+        propeller=propeller, observers=OBSERVERS, fidelity=small, turbulent_inflow=True
+    )
+    with pytest.raises(ValueError, match="turbulent_inflow is heard as broadband noise"):
+        om.Problem(group, reports=False).setup()
 
 
 @pytest.mark.slow

@@ -48,10 +48,12 @@ def systems(propeller, small, polars):
         "TrimmedAerodynamicsComp": [*both, tilted],
         "RotationSpeedComp": both,
         "AcousticsComp": [{**noise, "n_blades": 2, "n_loads": 3, "n_azimuths": 8}],
-        "BroadbandComp": [{**noise, "propeller": propeller, "n_azimuths": 8}],
+        "BroadbandComp": [
+            {**noise, "propeller": propeller, "n_azimuths": 8, "turbulent_inflow": True}
+        ],
         "NoiseObjectiveComp": [{"shape": 3}],
         "PropellerGroup": [
-            {**noise, "propeller": propeller, "broadband": True},
+            {**noise, "propeller": propeller, "broadband": True, "turbulent_inflow": True},
             {**geometry, "trim": "rpm", "camber": "design_lift_coefficient"},
             {**geometry, "trim_method": "two_point", "viscous": False},
             {**geometry, "tilted": True},

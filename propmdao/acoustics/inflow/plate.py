@@ -85,7 +85,8 @@ def inflow_noise(
     Notes
     -----
     Each strip is a flat plate without thickness at no incidence, long against the eddies and the
-    sound. Level and phase at the middle of a band stand for all of it.
+    sound. The middle of a band stands for all of it: against nine frequencies in each band a plate
+    of many wavelengths is 1.2 dB off at its interference, a small rotor 0.1 dB.
 
     References
     ----------
