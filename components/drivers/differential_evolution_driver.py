@@ -5,7 +5,7 @@ from __future__ import annotations
 import contextlib
 import math
 import time
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -101,6 +101,8 @@ class DifferentialEvolutionDriver(Driver):
         True when no feasible design was found.
     message : str
         Result of the search in a line, and why it ended; with the deviation left from equalities.
+    watch : callable or None
+        Function of yours that is called with every `Generation` when it has ended.
     """
 
     def __init__(self, **kwargs: Any) -> None:
@@ -119,6 +121,7 @@ class DifferentialEvolutionDriver(Driver):
 
         self.fail = True
         self.message = ""
+        self.watch: Callable[[Generation], None] | None = None
         # The state of a run, which `run` makes anew.
         self._search: ConstrainedSearch | None = None
         self._design_problem: DesignProblem  # from the final model
@@ -209,7 +212,7 @@ class DifferentialEvolutionDriver(Driver):
         most_designs = len(population) * (self.options["max_gen"] + 1)
         with progress_bar(self, most_designs, "design") as progress:
             search = self._search = ConstrainedSearch(
-                self._evaluate_positions, slack, self._improved, progress
+                self._evaluate_positions, slack, self._improved, progress, self.watch
             )
             # A fixed variable has one position, so that no design is run twice.
             free = self._design_problem.upper > self._design_problem.lower

@@ -20,7 +20,7 @@ from propmdao.components import NoiseObjectiveComp, PropellerGroup, designed_bla
 from propmdao.components.drivers.gradient_search import Search, run_slsqp
 from propmdao.figures.blades import blade_comparison
 from propmdao.figures.directivity import directivity
-from propmdao.figures.style import page, save
+from propmdao.figures.style import GRID, line_colors, line_styles, page, save
 from propmdao.records.wake_law import WakeGrid
 
 POINTS = ("hover", "flight")
@@ -147,6 +147,7 @@ def draw(
     levels = {}
     figure = page(3.0)
     axes = figure.subplots()
+    colors, styles = line_colors(blades), line_styles(blades)
     for name, points in analyses.items():
         for point, analysis in zip(POINTS, points, strict=True):
             observers = analysis.to_dict()["observers"][len(MICROPHONES) :]
@@ -156,9 +157,16 @@ def draw(
         axes.plot(
             [place["azimuth_deg"] for place in around],
             [place["blade_force"][2] for place in around],
+            color=colors[name],
+            linestyle=styles[name],
             label=name,
         )
-    axes.set(xlabel="azimuth, deg", ylabel="thrust of a blade in forward flight, N")
+    axes.set(
+        xlabel="azimuth of the blade in forward flight, deg; it retreats at 90",
+        xticks=range(0, 361, 90),
+        ylabel="thrust of a blade, N",
+    )
+    axes.grid(**GRID)
     axes.legend()
     save(figure, output / "around.png")
     save(blade_comparison(blades, [0.45, 0.75]), output / "blades.png")

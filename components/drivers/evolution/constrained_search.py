@@ -60,6 +60,8 @@ class ConstrainedSearch:
         number of evaluations so far, right after its evaluation.
     progress : tqdm
         Bar that counts the evaluations.
+    watch : callable, optional
+        Function that is called with every `Generation` when it has ended.
 
     Attributes
     ----------
@@ -83,6 +85,7 @@ class ConstrainedSearch:
         slack: EqualitySlack,
         improved: Callable[[Candidate, int], None],
         progress: tqdm,
+        watch: Callable[[Generation], None] | None = None,
     ) -> None:
         self.best: Candidate | None = None
         self.evaluations = 0
@@ -95,6 +98,7 @@ class ConstrainedSearch:
         self._slack = slack
         self._improved = improved
         self._progress = progress
+        self._watch = watch
         self._memo: dict[bytes, Candidate] = {}
 
     def run(
@@ -256,3 +260,5 @@ class ConstrainedSearch:
             )
         )
         self._progress.set_postfix(best=self.history[-1].best_objective, failed=self.failed)
+        if self._watch is not None:
+            self._watch(self.history[-1])

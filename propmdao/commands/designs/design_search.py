@@ -72,7 +72,7 @@ def run_search(
         # The analyses of both blades, before and after, tell of it.
         warnings.filterwarnings("ignore", category=FastEdgewiseWarning)
         if search["method"] == "evolution":
-            return _evolve(prob, folder, search, factory)
+            return _evolve(prob, folder, search, factory, label)
         return _descend(prob, folder, search["iterations"], label)
 
 
@@ -119,7 +119,11 @@ def _descend(prob: om.Problem, folder: Path, iterations: int, label: str) -> Sea
 
 
 def _evolve(
-    prob: om.Problem, folder: Path, search: dict[str, Any], factory: Callable[[], om.Problem]
+    prob: om.Problem,
+    folder: Path,
+    search: dict[str, Any],
+    factory: Callable[[], om.Problem],
+    label: str,
 ) -> SearchHistory:
     """Search by differential evolution, and then by derivatives from the best design."""
     workers = {"n_workers": search["workers"], "problem_factory": factory}
@@ -131,7 +135,13 @@ def _evolve(
         checkpoint=(folder / _CHECKPOINT).absolute(),
         best_file=(folder / _BEST).absolute(),
         disp=False,
+        progress=False,
         **(workers if search["workers"] > 1 else {}),
+    )
+    prob.driver.watch = lambda generation: progress(
+        f"generation {generation.generation}: best {label} {generation.best_objective:.4f},"
+        f" violation {generation.max_violation:.2g}, {generation.evaluations} designs,"
+        f" {generation.failed} failed"
     )
     prob.driver.add_recorder(
         om.SqliteRecorder(str((folder / _CASES).absolute()), record_viewer_data=False)
@@ -141,12 +151,6 @@ def _evolve(
     finally:
         prob.cleanup()
     progress(f"differential evolution: {prob.driver.message}")
-    for generation in prob.driver.history:
-        progress(
-            f"generation {generation.generation}: best {generation.best_objective:.4f},"
-            f" violation {generation.max_violation:.2g}, {generation.evaluations} designs,"
-            f" {generation.failed} failed"
-        )
     history = read_history(prob, folder / _CASES)
     if prob.driver.fail:
         raise ValueError(_no_design(history))

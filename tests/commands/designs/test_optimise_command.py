@@ -95,6 +95,28 @@ def test_evolution_is_polished_and_resumes(
     assert (tmp_path / f"{PROPELLER}_quiet.toml").read_bytes() == designed
 
 
+@pytest.mark.slow  # two processes compile the analysis
+def test_workers_find_what_one_process_finds(tmp_path: Path) -> None:
+    from propmdao.commands.designs.design_search import run_search
+    from propmdao.components import design_problem
+
+    def searched(n_workers: int) -> tuple[list[float], Any]:
+        factory = functools.partial(
+            design_problem, PROPELLER, pm.OperatingPoint(thrust=2.0), free=("twist",),
+            minimise="power", limits={"torque": "baseline"}, fidelity=SMALL,
+        )  # fmt: skip
+        prob, folder = factory(), tmp_path / str(n_workers)
+        folder.mkdir()
+        search = {"method": "evolution", "population": 6, "generations": 1, "seed": 3}
+        history = run_search(prob, folder, {**search, "workers": n_workers}, "power", factory)
+        return history.objective.tolist(), prob.get_val("beta_cp")
+
+    (one, blade), (two, same) = searched(1), searched(2)
+    assert one[-1] < 0.98 * min(one[:12])  # polished
+    np.testing.assert_allclose(two[:12], one[:12], rtol=1e-9)  # two generations of six
+    np.testing.assert_allclose(same, blade, atol=1e-6)
+
+
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [

@@ -289,3 +289,13 @@ def test_converged_search_stops_before_max_gen_and_says_so(problem, capsys):
     out, err = capsys.readouterr()
     assert prob.driver.message in out
     assert err == ""  # no progress bar where stderr is no terminal
+
+
+def test_every_generation_is_told_when_it_has_ended(problem):
+    prob = problem(lambda x: (np.sum(x**2), 0.0), [-1.0, -1.0], [1.0, 1.0], max_gen=3, tol=0.0)
+    told = []
+    prob.driver.watch = lambda generation: told.append((generation, len(prob.model.comp.designs)))
+    prob.run_driver()
+    assert [generation for generation, _ in told] == prob.driver.history
+    assert len(told) == 4
+    assert all(n == generation.evaluations for generation, n in told)

@@ -69,3 +69,9 @@ def test_a_failed_analysis_ends_the_search_with_its_reason(plane, tmp_path, monk
     monkeypatch.setattr(Plane, "fails_below", 1.9)
     with pytest.raises(om.AnalysisError, match="x is 1"):
         run_slsqp(plane, tmp_path / "cases.sql")
+
+
+def test_a_relative_file_lies_where_the_script_runs(plane, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    history = run_slsqp(plane, "cases.sql").history
+    assert (tmp_path / "cases.sql").exists() and history.objective.size > 1
