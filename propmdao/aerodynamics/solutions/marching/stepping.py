@@ -80,12 +80,19 @@ def march_start(flow: MarchFlow, schedule: Marching) -> MarchState:
     strips = jnp.broadcast_to(steady.circulation[-1], (n_lags, m, steady.circulation.shape[1]))
     free = None if flow.free is None else wake_by_law(flow, steady.induced_velocity)
     begun = MarchState(Past(strips, rings), jnp.full(n, steady.thrust), free)
-    if schedule.start == "steady":
-        return begun
-    none = dataclasses.replace(begun, past=Past(jnp.zeros_like(strips), rings))
-    # The blow with which circulation appears is no force of any time: its rate begins at 0.
-    first = advance(flow, none, 0.0)[0].past.rings[0]
-    return dataclasses.replace(none, past=Past(none.past.strips, jnp.stack([first, first])))
+    if schedule.start == "impulsive":
+        begun = dataclasses.replace(begun, past=Past(jnp.zeros_like(strips), rings))
+        # The blow with which circulation appears is no force of any time: its rate begins at 0.
+        first = advance(flow, begun, 0.0)[0].past.rings[0]
+        past = Past(begun.past.strips, jnp.stack([first, first]))
+        begun = dataclasses.replace(begun, past=past)
+    if free is not None:
+        # What moves from now on has no velocity before: with that of the law, or with none, the
+        # first step would leave an error of first order.
+        moving = advance(flow, begun, 0.0)[0].free
+        assert moving is not None
+        free = dataclasses.replace(free, velocity=moving.velocity)
+    return dataclasses.replace(begun, free=free)
 
 
 @compiled

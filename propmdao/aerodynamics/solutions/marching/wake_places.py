@@ -112,7 +112,7 @@ def sheets_at(flow: MarchFlow, free: FreeWakeState | None, w: Array, azimuth: Sc
 
 @compiled
 def wake_by_law(flow: MarchFlow, w: Array) -> FreeWakeState:
-    """Free wake where the prescribed one is.
+    """Free wake where the prescribed one is; its velocity, not known yet, is 0.
 
     Parameters
     ----------
@@ -129,9 +129,7 @@ def wake_by_law(flow: MarchFlow, w: Array) -> FreeWakeState:
     assert flow.free is not None
     shape = flow.n_marched, *flow.free.edge.shape[:1], flow.free.ages.size, 3
     there = jnp.broadcast_to(_law(flow, flow.case.state, w), shape)
-    spacing = flow.free.ages[1] / flow.case.state.rotation_speed
-    rate = jnp.diff(there, axis=2, append=2.0 * there[:, :, -1:] - there[:, :, -2:-1]) / spacing
-    return FreeWakeState(there, rate)
+    return FreeWakeState(there, jnp.zeros(shape))
 
 
 def _law(flow: MarchFlow, state: RotorState, w: Array) -> Array:
