@@ -5,7 +5,8 @@ the distance d from a vortex, the polynomial through n Chebyshev points misses i
 q = d / h + sqrt(1 + (d / h)^2) (Trefethen, Approximation Theory and Approximation Practice, 2013,
 theorem 8.2). So a few points of a strip stand for all of its collocation points and segments.
 Between the middles of the strips, for the chordwise segments, a cubic goes through the nearest
-four; strips are cosine spaced, so that it is one in the angle of that cosine.
+four, and a straight line beyond the outer ones; strips are cosine spaced, so that both are in the
+angle of that cosine.
 """
 
 from __future__ import annotations
@@ -117,9 +118,10 @@ def _reading(n_chordwise: int, fractions: np.ndarray) -> Array:
 
 def _to_edges(n_spanwise: int) -> np.ndarray:
     """Matrix from the middles of the strips to their edges, (ns + 1, ns)."""
-    n = min(4, n_spanwise)
     matrix = np.zeros((n_spanwise + 1, n_spanwise))
     for edge in range(n_spanwise + 1):
+        # Beyond the last strips a straight line: a cubic there would enlarge what is rough.
+        n = min(2 if edge in (0, n_spanwise) else 4, n_spanwise)
         near = np.clip(edge - n // 2, 0, n_spanwise - n) + np.arange(n)
         matrix[edge, near] = _polynomial(near + 0.5, np.array([edge]))[0]
     return matrix

@@ -60,7 +60,7 @@ def test_a_vortex_is_missed_by_what_chebyshev_points_miss(plate, distance):
         assert np.abs(missed).max() < 3.0 / distance * ratio**-n
 
 
-def test_a_cubic_in_the_spanwise_angle_is_read_exactly_at_the_edges(plate):
+def test_a_cubic_in_the_spanwise_angle_is_read_exactly_between_the_strips(plate):
     lines, _, segments = plate
     angle = np.pi * (np.arange(NS) + 0.5) / NS
     edge = np.pi * np.arange(NS + 1) / NS
@@ -69,5 +69,10 @@ def test_a_cubic_in_the_spanwise_angle_is_read_exactly_at_the_edges(plate):
         return 1.0 + angle - 0.3 * angle**3
 
     values = np.tile(flow(angle), lines.shape[0] // NS)
-    chordwise = at_segments(jnp.asarray(values), NC)[NC * NS :]
-    np.testing.assert_allclose(chordwise, np.tile(flow(edge), NC), rtol=1e-12)
+    read = at_segments(jnp.asarray(values), NC)[NC * NS :].reshape(NC, NS + 1)
+    expected = np.tile(flow(edge), (NC, 1))
+    np.testing.assert_allclose(read[:, 1:-1], expected[:, 1:-1], rtol=1e-12)
+    # At root and tip, on the line through the two nearest.
+    for end, first, second in ((0, 0, 1), (-1, -1, -2)):
+        line = 1.5 * flow(angle[first]) - 0.5 * flow(angle[second])
+        np.testing.assert_allclose(read[:, end], line, rtol=1e-12)
