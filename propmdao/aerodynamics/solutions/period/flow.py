@@ -7,10 +7,13 @@ from jax import Array
 
 from propmdao.aerodynamics.lattice.rings import BOUND_CORE
 from propmdao.aerodynamics.solutions.case import RotorCase
-from propmdao.aerodynamics.solutions.period.lattice import PeriodLattice, period_lattice
+from propmdao.aerodynamics.solutions.period.lattice import (
+    PeriodLattice,
+    PeriodWake,
+    period_lattice,
+)
 from propmdao.aerodynamics.solutions.period.loads import PeriodBladeLoads, period_loads
 from propmdao.aerodynamics.solutions.period.onset import azimuths_of, tilted_onset
-from propmdao.aerodynamics.solutions.period.wake import PeriodWake
 from propmdao.aerodynamics.vortices.cores import core_radius, middles
 from propmdao.aerodynamics.wakes.helical import helical_wake
 from propmdao.aerodynamics.wakes.history import shedding_delay
