@@ -57,8 +57,8 @@ class MarchedAerodynamicsComp(NodesComp):
     Derivatives are forward products alone, each from two marches to either side of the point (two
     to one side from hover): a model with this component is differentiated with
     ``setup(mode="fwd")``, at two marches for each design variable and node; backward there is an
-    error. Finer differences of twice as many marches differ from them by some 1e-5 to 1e-4. A free wake
-    in hover never repeats, and derivatives of its loads mean little.
+    error. Finer differences of twice as many marches differ from them by some 1e-5 to 1e-4. A free
+    wake in hover never repeats, and derivatives of its loads mean little.
 
     Inputs
     ------
