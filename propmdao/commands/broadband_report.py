@@ -46,7 +46,8 @@ def trip_words(model: dict[str, Any]) -> str:
     """
     noise, transition = model["noise"]["broadband"], model["loads"]["transition"]
     places = [transition[f"trip_{side}"] for side in ("upper", "lower")]
-    if noise["trip"] == "none" and noise["layers"] == "sections" and min(places) < 1.0:
+    tripped = any(place is not None and place < 1.0 for place in places)
+    if noise["trip"] == "none" and noise["layers"] == "sections" and tripped:
         return "tripped as in the polars"
     return _TRIPPED[noise["trip"]]
 

@@ -116,7 +116,7 @@ def test_over_ground_and_through_air_the_ways_add(edgewise):
 
 
 def test_broadband_noise_is_that_of_the_flow_at_each_azimuth():
-    heard = tilted(observers=OBSERVERS, broadband=True)
+    heard = tilted(observers=OBSERVERS, broadband=True, layers="bpm")
     loads, n = heard.loads, COARSE.n_azimuths
     blade = Blade.from_propeller(PROPELLER)
     radii = strip_interpolation(PROPELLER.r_over_R, COARSE.n_spanwise)

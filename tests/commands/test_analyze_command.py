@@ -254,7 +254,7 @@ def test_keys_are_those_promised() -> None:
     assert set(point["change"]) == {"twist_offset_deg", "chord_factor", "diameter", "n_blades"}
     assert set(point["model"]) == {"loads", "noise", "fidelity"}
     assert set(point["model"]["loads"]) == set(
-        "viscous stall_delay wake transition measured_drag elastic unsteady".split()
+        "viscous stall_delay wake transition measured_drag elastic unsteady blade_element".split()
     )
     assert set(point["listening"]) == {"observers", "surroundings", "groups"}
     assert set(point["polars"]) == {"e63", "naca4412"}

@@ -7,7 +7,7 @@ from rich.console import Console
 
 from propmdao.commands.broadband_report import print_mechanisms, trip_words
 
-QUIET = dict.fromkeys(("pressure_side", "bluntness", "tip"), -200.0)
+QUIET = dict.fromkeys(("pressure_side", "bluntness", "tip", "inflow_turbulence"), -200.0)
 RANGES = {
     "reynolds": {"least": 4e3, "largest": 9e4, "measured": [5.5e4, 1.5e6], "outside": 0.42},
     "mach": {"least": 0.0, "largest": 0.2, "measured": [0.0, 0.21], "outside": 0.0},
@@ -29,7 +29,7 @@ def said(*observers):
 def test_every_mechanism_is_printed_and_the_loudest_named():
     text = said(observer(50.3, 45.2, 7.0))
     row = next(line for line in text.splitlines() if "50.3" in line)
-    assert row.split() == ["4200.0", "-45", "-", "50.3", "45.2", "7.0", "-", "-"]
+    assert row.split() == ["4200.0", "-45", "-", "50.3", "45.2", "7.0", "-", "-", "-"]
     assert "The loudest is the boundary layer of the suction side." in text
 
 

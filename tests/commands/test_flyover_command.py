@@ -25,8 +25,8 @@ def test_json_holds_the_flight_its_levels_and_their_history(
     result = json.loads(capsys.readouterr().out)
     assert list(result) == (
         "propeller point change model polars rpm speed rho J thrust torque shaft_power CT CQ CP eta"
-        " figure_of_merit converged failure deflection hub_force hub_moment flight levels epnl"
-        " pnltm epnl_failure history".split()
+        " figure_of_merit converged failure deflection hub_force hub_moment broadband_range flight"
+        " levels epnl pnltm epnl_failure history".split()
     )
     assert result["model"]["noise"]["broadband"]["trip"] == "heavy"
     assert result["flight"]["height"] == 20.0 and result["flight"]["absorption"] is True

@@ -113,8 +113,8 @@ def test_broadband_partials(problem, assert_directional, forward):
 def test_turbulence_that_flows_in(problem, problem_at):
     problem.run_model()
     calm = problem.get_val("broadband_mean_square_pressure")
-    names = ("section_speed", "section_lift_coefficient", "rpm", "speed")
-    point = {name: POINTS[name][0] for name in names}
+    sections = ("section_speed", "section_angle_of_attack", "section_lift_coefficient")
+    point = {name: POINTS[name][0] for name in (*sections, "rpm", "speed")}
     assert "turbulence_intensity" not in problem.model.comp.get_io_metadata(iotypes="input")
     windy = problem_at(None, turbulent_inflow=True, **point)
     windy.run_model()
@@ -142,8 +142,8 @@ def test_a_group_hears_turbulence_as_broadband_noise_alone(propeller, small):
 
 @pytest.mark.slow
 def test_partials_with_turbulence(problem_at, assert_directional):
-    names = ("section_speed", "section_lift_coefficient", "rpm", "speed")
-    point = {name: POINTS[name][0] for name in names}
+    sections = ("section_speed", "section_angle_of_attack", "section_lift_coefficient")
+    point = {name: POINTS[name][0] for name in (*sections, "rpm", "speed")}
     eddies = {"turbulence_intensity": 0.5, "turbulence_length_scale": 0.05}
     problem = problem_at(None, turbulent_inflow=True, **point, **eddies)
     problem.run_model()

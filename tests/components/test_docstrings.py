@@ -9,6 +9,7 @@ from openmdao.core.system import System
 
 from propmdao import components
 from propmdao.acoustics.kinematics.observers import arc
+from propmdao.aerodynamics.sections.edge_layers.propeller_layers import layers_for
 
 OBSERVERS = arc(1.905, [-45.0, 0.0])
 #: Sections of a docstring, as numpydoc underlines them.
@@ -40,7 +41,7 @@ def systems(propeller, small, polars):
     geometry = {"propeller": propeller, "fidelity": small}
     options = {
         "GeometryComp": [
-            {**geometry, "polars": polars},
+            {**geometry, "polars": polars, "layers": layers_for(propeller)},
             {**geometry, "camber": "design_lift_coefficient"},
         ],
         "AerodynamicsComp": [*both, tilted],
@@ -49,7 +50,13 @@ def systems(propeller, small, polars):
         "RotationSpeedComp": both,
         "AcousticsComp": [{**noise, "n_blades": 2, "n_loads": 3, "n_azimuths": 8}],
         "BroadbandComp": [
-            {**noise, "propeller": propeller, "n_azimuths": 8, "turbulent_inflow": True}
+            {
+                **noise,
+                "propeller": propeller,
+                "n_azimuths": 8,
+                "turbulent_inflow": True,
+                "layers": layers_for(propeller),
+            }
         ],
         "NoiseObjectiveComp": [{"shape": 3}],
         "PropellerGroup": [

@@ -47,6 +47,7 @@ BLADE = {
     "lattice_nodes",
     "surface_nodes",
     "section_polars",
+    "section_layers",
     "section_thickness_over_chord",
     "band_frequency",
 }

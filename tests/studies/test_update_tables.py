@@ -29,8 +29,10 @@ def script(checkout: Path, import_study: Callable[[str], ModuleType]) -> Iterato
 
 
 def test_every_table_has_its_place(script: ModuleType, checkout: Path) -> None:
-    page = (checkout / "docs" / "verification.md").read_text(encoding="utf-8")
-    places = re.findall(r"<!-- table: (.*?) -->\n.*?<!-- end of table -->", page, re.DOTALL)
+    places = []
+    for name in ("verification.md", "thesis.md"):
+        page = (checkout / "docs" / name).read_text(encoding="utf-8")
+        places += re.findall(r"<!-- table: (.*?) -->\n.*?<!-- end of table -->", page, re.DOTALL)
     assert sorted(places) == sorted(script.TABLES)
 
 
