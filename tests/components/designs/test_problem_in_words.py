@@ -81,6 +81,7 @@ def test_ranges_keep_to_what_the_polars_know(heard, propeller):
     assert np.all(np.interp([0.2, 1.0], propeller.r_over_R, camber) + upper[[0, -1]] <= highest)
 
 
+@pytest.mark.slow
 def test_derivatives_of_the_objective_are_those_of_differences(heard):
     name, step = "beta_cp", 1e-4
     with warnings.catch_warnings():

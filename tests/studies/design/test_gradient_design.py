@@ -120,6 +120,7 @@ def test_contributions_lead_from_the_start_to_the_optimum(
     assert first[1] != last[1]
 
 
+@pytest.mark.slow
 def test_tables_and_figures_without_a_search(
     study: ModuleType, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
