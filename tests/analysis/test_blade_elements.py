@@ -5,6 +5,7 @@ import pytest
 
 import propmdao as pm
 from propmdao.analysis.request import Request
+from propmdao.commands.program import main
 from propmdao.propeller.catalog import catalog_names
 
 PROPELLER = pm.load_propeller("apcsf_11x4.7")
@@ -65,3 +66,11 @@ def test_every_propeller_of_the_catalogue_has_loads(name):
     loads = pm.analyze(pm.load_propeller(name), rpm=4000.0, blade_element=True).loads
     assert bool(loads.converged)
     assert float(loads.thrust) > 0.0
+
+
+def test_the_report_says_that_there_was_no_lattice(capsys):
+    options = ["analyze", "apcsf_11x4.7", "--rpm", "4000", "--blade-element"]
+    assert main(options) == 0
+    assert "Blade elements, no lattice" in capsys.readouterr().out
+    assert main([*options, "--vtk", "folder"]) == 2
+    assert "--vtk draws the lattice" in capsys.readouterr().err
