@@ -8,8 +8,6 @@ other processes share the machine, it is nearer to what a quiet one would take.
 from __future__ import annotations
 
 import resource
-import time
-from collections.abc import Callable
 
 import jax
 import jax.numpy as jnp
@@ -48,7 +46,7 @@ def solved(nodes: jax.Array) -> jax.Array:
     return jnp.stack([loads.thrust, loads.torque])
 
 
-def test_periodic_lattice(benchmark, nodes):
+def test_periodic_lattice(benchmark, nodes, processor_time):
     """Loads at a rotation speed, and the adjoint of thrust and torque by all nodes."""
     solve = jax.jit(solved)
 
@@ -57,21 +55,10 @@ def test_periodic_lattice(benchmark, nodes):
         value, pull = jax.vjp(solved, nodes)
         return value, jax.vmap(pull)(jnp.eye(2))[0]
 
-    analysis, both = (_seconds(lambda f=f: f(nodes)) for f in (solve, gradient))
+    analysis, both = (processor_time(lambda f=f: f(nodes)) for f in (solve, gradient))
     benchmark.extra_info["analysis_processor_s"] = analysis
     benchmark.extra_info["analyses_with_adjoint"] = both / analysis
     benchmark.extra_info["peak_memory_gib"] = (
         resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 2**20
     )
     benchmark.pedantic(lambda: jax.block_until_ready(solve(nodes)), rounds=ROUNDS)
-
-
-def _seconds(function: Callable[[], object]) -> float:
-    """Least processor time of a function once it is compiled [s]."""
-    jax.block_until_ready(function())
-    times = []
-    for _ in range(ROUNDS):
-        start = time.process_time()
-        jax.block_until_ready(function())
-        times.append(time.process_time() - start)
-    return min(times)
