@@ -126,12 +126,8 @@ def rotor_self_noise(
 
     @jax.checkpoint  # the reverse derivative recomputes one observer at a time
     def noise_at(observer: Array) -> SelfNoise:
-        sight, approach, stretch = emission(strips.position, observer, state, n_azimuths)
-        chordwise, spanwise, normal = (
-            sight[0] * x + sight[1] * y + sight[2] * z
-            for x, y, z in (e.T for e in strip_axes(strips))
-        )
-        radiated = moving_radiation(chordwise, spanwise, normal, approach)
+        sight, approach, stretch = emission(strips, observer, state, n_azimuths)
+        radiated = moving_radiation(*sight, approach)
         emitted = frequency * stretch  # (band, azimuth, strip)
         edge = trailing_edge_noise(emitted, section, layer, radiated, air)
         radiated_last = jax.tree.map(lambda q: q[..., -1], radiated)
@@ -177,32 +173,15 @@ def tip_section(strips: StripFlow) -> Section:
     return jax.tree.map(there, strips.section)
 
 
-def strip_axes(strips: StripFlow) -> tuple[Array, Array, Array]:
-    """Directions of the strips of blade 1.
+def emission(
+    strips: StripFlow, observer: Array, state: RotorState, n_azimuths: int
+) -> tuple[tuple[Array, Array, Array], Array, Array]:
+    """Ways of the sound of strips of blade 1 to an observer who flies along.
 
     Parameters
     ----------
     strips : StripFlow
         Strips of blade 1 at azimuth 0.
-
-    Returns
-    -------
-    tuple of three (n, 3) arrays
-        Chord, span and normal directions.
-    """
-    normal = jnp.cross(strips.chord_direction, strips.span_direction)
-    return strips.chord_direction, strips.span_direction, normal
-
-
-def emission(
-    position: Array, observer: Array, state: RotorState, n_azimuths: int
-) -> tuple[tuple[Array, Array, Array], Array, Array]:
-    """Ways of the sound of points of blade 1 to an observer who flies along.
-
-    Parameters
-    ----------
-    position : (n, 3) array
-        Points of blade 1 at azimuth 0 [m].
     observer : (3,) array
         Position from the rotor centre, moving with it [m].
     state : RotorState
@@ -213,12 +192,13 @@ def emission(
     Returns
     -------
     sight : tuple of three arrays
-        Components of the vectors from emission to reception, in the blade's frame [m]: the observer
-        is turned back instead of the blade forward. Here and below each (n_azimuths, n).
+        Components of the vectors from emission to reception along chord, span and normal of the
+        strips [m]: the observer is turned back instead of the blade forward. Here and below each
+        (n_azimuths, n).
     approach : array
         1 - M cos xi of the motion through the air.
     stretch : array
-        dt / dtau: how long the observer hears what a point emits.
+        dt / dtau: how long the observer hears what a strip emits.
     """
     azimuth = 2 * np.pi * np.arange(n_azimuths)[:, None] / n_azimuths
     cos, sin = np.cos(azimuth), np.sin(azimuth)
@@ -228,7 +208,7 @@ def emission(
 
     m = state.velocity / state.air.sound_speed
     mx, my, mz = turned_back(m)
-    x, y, z = position.T
+    x, y, z = strips.position.T
     sx, sy, sz = (q - p for q, p in zip(turned_back(observer), (x, y, z), strict=True))
     d = emission_distance(mx * sx + my * sy + mz * sz, sx**2 + sy**2 + sz**2, m @ m)
     rx, ry, rz = sx + mx * d, sy + my * d, sz + mz * d
@@ -236,4 +216,10 @@ def emission(
     turning = state.rotation_speed * (x * ry - y * rx) / (state.air.sound_speed * d)
     flying = (mx * rx + my * ry + mz * rz) / d
     approach = 1 - turning - flying
-    return (rx, ry, rz), approach, at_least(approach / (1 - flying), _LEAST_STRETCH)
+    normal = jnp.cross(strips.chord_direction, strips.span_direction)
+    chordwise, spanwise, across = (
+        rx * x + ry * y + rz * z
+        for x, y, z in (axis.T for axis in (strips.chord_direction, strips.span_direction, normal))
+    )
+    stretch = at_least(approach / (1 - flying), _LEAST_STRETCH)
+    return (chordwise, spanwise, across), approach, stretch

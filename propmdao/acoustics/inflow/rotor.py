@@ -9,7 +9,7 @@ import jax.numpy as jnp
 from jax import Array
 from jax.typing import ArrayLike
 
-from propmdao.acoustics.broadband.rotor import StripFlow, emission, strip_axes
+from propmdao.acoustics.broadband.rotor import StripFlow, emission
 from propmdao.acoustics.inflow.plate import inflow_noise
 from propmdao.records.air import Turbulence
 from propmdao.records.states import RotorState
@@ -68,12 +68,7 @@ def rotor_inflow_noise(
 
     @jax.checkpoint  # the reverse derivative recomputes one observer at a time
     def noise_at(observer: Array) -> Array:
-        toward, approach, stretch = emission(strips.position, observer, state, n_azimuths)
-        chordwise, spanwise, normal = (
-            toward[0] * x + toward[1] * y + toward[2] * z
-            for x, y, z in (axis.T for axis in strip_axes(strips))
-        )
-        sight = chordwise, spanwise, normal
+        sight, approach, stretch = emission(strips, observer, state, n_azimuths)
         emitted = frequency * stretch  # (band, azimuth, strip)
         power = inflow_noise(emitted, strips.section, turbulence, sight, approach, state.air)
         return n_blades / n_azimuths * jnp.sum(power * stretch, (1, 2))

@@ -101,10 +101,12 @@ def fly_over(analysis: Analysis, flight: Flight, *, sound: bool = False) -> Flyo
     time = time + start
 
     sights = [line_of_sight(track, fixed_observers([x]), time, sound_speed) for x in places]
-    flow = _flow(analysis, propeller)
+    model = _with_noise(analysis.model, propeller)
+    flow = _flow(analysis, propeller, model)
+    dopplers = [np.asarray(sight.doppler)[0] for sight in sights]
     noises = [
-        _broadband(analysis, flow, np.asarray(place), np.asarray(sight.doppler)[0], time, track)
-        for place, sight in zip(places, sights, strict=True)
+        _broadband(analysis, flow, model, np.asarray(place), doppler, time, track)
+        for place, doppler in zip(places, dopplers, strict=True)
     ]
     if len(noises) == 1:
         parts["broadband"] = 4.0 * noises[0]  # on the ground itself pressure is doubled
@@ -163,9 +165,8 @@ def _tones(
     return histories.each(lambda pressure: factor * pressure.sum(axis=0, keepdims=True))
 
 
-def _flow(analysis: Analysis, propeller: Propeller) -> StripFlow:
+def _flow(analysis: Analysis, propeller: Propeller, model: Model) -> StripFlow:
     """Strips of the blade as broadband noise sees them."""
-    model = _with_noise(analysis.model, propeller)
     noise = model.noise.broadband
     assert noise is not None
     return flow_of(
@@ -188,6 +189,7 @@ def _with_noise(model: Model, propeller: Propeller) -> Model:
 def _broadband(
     analysis: Analysis,
     flow: StripFlow,
+    model: Model,
     place: Floats,
     doppler: Floats,
     times: Floats,
@@ -198,12 +200,11 @@ def _broadband(
     # frequencies are those of flying along times Doppler's factor.
     pose = poses(track, times)
     beside = np.einsum("tij,ti->tj", np.asarray(pose.rotation), place - np.asarray(pose.origin))
-    propeller, state = analysis.changed_propeller, analysis.state
-    model = _with_noise(analysis.model, propeller).noise.broadband
-    assert model is not None
-    n_blades, turbulence = int(propeller.n_blades), analysis.point.turbulent
+    n_blades, state = int(analysis.changed_propeller.n_blades), analysis.state
+    noise, turbulence = model.noise.broadband, analysis.point.turbulent
+    assert noise is not None
     noises = (
-        self_noise(flow, n_blades, state, position[None], model, BANDS_HZ / factor, turbulence)
+        self_noise(flow, n_blades, state, position[None], noise, BANDS_HZ / factor, turbulence)
         for position, factor in zip(beside, doppler, strict=True)
     )
-    return np.array([noise.total[0] for noise in noises])
+    return np.array([each.total[0] for each in noises])
