@@ -310,10 +310,8 @@ def _finish(
         return _DB if response.is_noise else float(np.abs(value).max())
 
     for word, limit in limits.items():
-        response, name = (
-            RESPONSES[word],
-            output_name(word, 1),
-        )  # a limit holds at each operating point
+        # A limit holds at each operating point, not in the mean.
+        response, name = RESPONSES[word], output_name(word, 1)
         value = np.array(prob.get_val(name, units=response.unit or None))
         upper = value if limit == BASELINE else np.full(value.shape, float(limit))
         prob.model.add_constraint(
