@@ -14,8 +14,7 @@ from propmdao.acoustics.kinematics.limits import require_subsonic_tip
 from propmdao.aerodynamics.solutions.case import RotorCase
 from propmdao.aerodynamics.solutions.edgewise import (
     edgewise_advance_ratio,
-    is_slow,
-    longer,
+    grid_for,
     warn_if_fast,
 )
 from propmdao.aerodynamics.solutions.marching.limits import MarchError
@@ -113,9 +112,7 @@ class MarchedAerodynamicsComp(NodesComp):
     def setup(self) -> None:
         fidelity, schedule = self.options["fidelity"], self.options["march"]
         self.static = RotorKind(self.options["n_blades"], schedule.steps_per_turn)
-        grid = fidelity.period_wake
-        self.constants = add_rotor_inputs(self, grid)
-        self._wake_in_slow_flight = wake_transport(self.options["wake"], longer(grid))
+        self.constants = add_rotor_inputs(self, fidelity.period_wake)
         self.add_point_input("rpm", val=4000.0, units="rpm")
         add_point_inputs(self, ["incidence_deg"])
         add_performance(self, hub=True)
@@ -203,7 +200,8 @@ class MarchedAerodynamicsComp(NodesComp):
     def _wake_at(self, inputs: Arrays) -> WakeTransport:
         """Law of the wake, a longer one in slow flight."""
         ratio = edgewise_advance_ratio(self._case(inputs).state, 0.5 * inputs["diameter"].item())
-        return self._wake_in_slow_flight if is_slow(ratio) else self.constants.wake
+        grid = grid_for(ratio, self.options["fidelity"].period_wake)
+        return wake_transport(self.options["wake"], grid)
 
     def _marched(self, inputs: Arrays, wake: WakeTransport) -> Mapping[str, Any]:
         case = dataclasses.replace(self._case(inputs), wake=wake)

@@ -46,6 +46,11 @@ def longer(grid: WakeGrid) -> WakeGrid:
     return dataclasses.replace(grid, turns=_LONGER * grid.turns)
 
 
+def grid_for(ratio: float, grid: WakeGrid) -> WakeGrid:
+    """Grid of the wake at an edgewise advance ratio, from that of faster flight."""
+    return longer(grid) if is_slow(ratio) else grid
+
+
 def warn_if_fast(ratio: float, stacklevel: int) -> None:
     """Warn of an edgewise advance ratio at which the retreating side stalls.
 

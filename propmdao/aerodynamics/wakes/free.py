@@ -24,9 +24,13 @@ import numpy as np
 from jax import Array
 
 from propmdao.aerodynamics.vortices.biot_savart import summed_velocities
-from propmdao.aerodynamics.vortices.cores import core_radius, middles
 from propmdao.aerodynamics.wakes.lags import lag_weights, read
-from propmdao.aerodynamics.wakes.sheets import SINGLE, Sheets, fewer_filaments, sheet_velocities
+from propmdao.aerodynamics.wakes.sheets import (
+    SINGLE,
+    aged_sheets,
+    fewer_filaments,
+    sheet_velocities,
+)
 from propmdao.aerodynamics.wakes.skewed import sideways_drift
 from propmdao.records.pytrees import Scalar, record
 from propmdao.records.states import RotorState
@@ -290,8 +294,7 @@ def induced_at_nodes(
     coarse = jnp.einsum("ks,lbs->lbk", free.to_strips, strips)
     ring = read(jnp.broadcast_to(lag, (coarse.shape[2], lag.size)), coarse)
 
-    ages = middles(free.ages), free.ages[:-1]
-    sheets = Sheets(nodes, *(core_radius(age, state, free.core) for age in ages))
+    sheets = aged_sheets(nodes, free.ages, state, free.core)
     # In lengths of the way from the axis to the tip, for single precision.
     length = jnp.linalg.norm(free.edge[-1, :2])
     start, end, circulation = bound

@@ -13,8 +13,10 @@ import numpy as np
 from jax import Array
 
 from propmdao.aerodynamics.vortices.biot_savart import summed_velocities
+from propmdao.aerodynamics.vortices.cores import core_radius, middles
 from propmdao.aerodynamics.wakes.lags import shed
 from propmdao.records.pytrees import Scalar, record, static
+from propmdao.records.states import RotorState
 
 #: For what is far away or smoothed: 1e-5 of a velocity, at half the time.
 SINGLE = np.float32
@@ -53,6 +55,29 @@ class Sheets:
             self.trailing_core[:n_rings],
             self.shed_core[:n_rings],
         )
+
+
+def aged_sheets(nodes: Array, ages: Array, state: RotorState, initial: Scalar) -> Sheets:
+    """Sheets whose cores have grown with their age.
+
+    Parameters
+    ----------
+    nodes : (n_filaments, n_blades, n_nodes, 3) array
+        Nodes of the filaments, from the trailing edge [m].
+    ages : (n_nodes,) array
+        Azimuths of the nodes behind their blade [rad].
+    state : RotorState
+        Rotation speed and air of the rotor.
+    initial : float
+        Core radius at the blade [m].
+
+    Returns
+    -------
+    Sheets
+        The sheets; a trailing segment is as old as its middle.
+    """
+    trailing, shed = (core_radius(at_age, state, initial) for at_age in (middles(ages), ages[:-1]))
+    return Sheets(nodes, trailing, shed)
 
 
 @record
@@ -166,31 +191,27 @@ def sheet_velocities(points: Array, sheets: Sheets, ring: Array, present: Array)
         strengths.swapaxes(0, 1).reshape(ring.shape[1], -1)
         for strengths in (ring, shed(ring, present))
     )
-    return velocities_of_strips(points, sheets.nodes, rings, segments, sheets.cores)
+    return velocities_of_strips(points, sheets, rings, segments)
 
 
-def velocities_of_strips(
-    points: Array, nodes: Array, ring: Array, shed: Array, cores: tuple[Array, Array]
-) -> Array:
+def velocities_of_strips(points: Array, sheets: Sheets, ring: Array, shed: Array) -> Array:
     """Velocity at points by the strips of sheets behind all blades.
 
     Parameters
     ----------
     points : (n_points, 3) array
         Points at which the velocity is wanted [m].
-    nodes : (ns + 1, n_blades, n_nodes, 3) array
-        Nodes of the filaments [m].
+    sheets : Sheets
+        Sheets behind all blades.
     ring, shed : (ns, n_blades * (n_nodes - 1)) arrays
         Circulation of the rings, and of the segments at their younger ends [m^2/s].
-    cores : tuple of two (n_blades * (n_nodes - 1),) arrays
-        Core radius of the segments along the filaments, and across them [m].
 
     Returns
     -------
     (3, n_points) array
         Velocity [m/s].
     """
-    trailing_core, shed_core = cores
+    nodes, (trailing_core, shed_core) = sheets.nodes, sheets.cores
     padded = jnp.pad(ring, ((1, 1), (0, 0)))
 
     # The checkpoints keep reverse mode from storing every block of segments x points.

@@ -8,8 +8,7 @@ from propmdao.acoustics.kinematics.limits import require_subsonic_tip
 from propmdao.aerodynamics.solutions.case import RotorCase
 from propmdao.aerodynamics.solutions.edgewise import (
     edgewise_advance_ratio,
-    is_slow,
-    longer,
+    grid_for,
     warn_if_fast,
 )
 from propmdao.aerodynamics.solutions.marching.marched import march
@@ -69,6 +68,6 @@ def marched(
     require_subsonic_tip(radius, state)
     grid, ratio = model.fidelity.period_wake, edgewise_advance_ratio(state, radius)
     warn_if_fast(ratio, stacklevel=4)
-    wake = wake_transport(model.loads.wake, longer(grid) if is_slow(ratio) else grid)
+    wake = wake_transport(model.loads.wake, grid_for(ratio, grid))
     case = dataclasses.replace(case.turning(point.rotation_speed), wake=wake)
     return march(case, model.loads.unsteady, progress), state

@@ -19,6 +19,7 @@ from propmdao.aerodynamics.solutions.period.loads import period_loads
 from propmdao.aerodynamics.solutions.period.onset import PeriodOnset, azimuths_of
 from propmdao.aerodynamics.wakes.ages import wake_azimuths
 from propmdao.aerodynamics.wakes.history import shedding_delay
+from propmdao.aerodynamics.wakes.sheets import Sheets
 from propmdao.geometry.lattice import lattice_chord_fraction
 from propmdao.records.air import Air
 from propmdao.records.wake_law import WakeGrid
@@ -45,13 +46,12 @@ def lift():
     def solve(omega):
         behind = SPEED / omega * ages[:, None] * jnp.array([0.0, 0.0, -1.0])
         delay = shedding_delay(lattice.last_panel, SPEED / omega * ages[1]) / SPEED * omega
+        core = jnp.full(ages.size - 1, 1e-6)
         wake = PeriodWake(
-            nodes=edge[:, None, None, :] + behind,
+            sheets=Sheets(edge[:, None, None, :] + behind, core, core),
             drift=jnp.zeros((N, ages.size, 3)),
             ages=ages,
             delay=delay,
-            trailing_core=jnp.full(ages.size - 1, 1e-6),
-            shed_core=jnp.full(ages.size - 1, 1e-6),
         )
         velocity = jnp.zeros((N, 3, lattice.lattice.points.shape[0])).at[:, 2].set(-SPEED)
         onset = PeriodOnset(

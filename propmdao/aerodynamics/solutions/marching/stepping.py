@@ -79,20 +79,22 @@ def march_start(flow: MarchFlow, schedule: Marching) -> MarchState:
     rings = jnp.broadcast_to(steady.circulation.ravel(), (2, m, steady.circulation.size))
     strips = jnp.broadcast_to(steady.circulation[-1], (n_lags, m, steady.circulation.shape[1]))
     free = None if flow.free is None else wake_by_law(flow, steady.induced_velocity)
-    begun = MarchState(Past(strips, rings), jnp.full(n, steady.thrust), free)
-    if schedule.start == "impulsive":
-        begun = dataclasses.replace(begun, past=Past(jnp.zeros_like(strips), rings))
+    impulsive = schedule.start == "impulsive"
+    past = Past(jnp.zeros_like(strips) if impulsive else strips, rings)
+    begun = MarchState(past, jnp.full(n, steady.thrust), free)
+    if free is None and not impulsive:
+        return begun
+    first = advance(flow, begun, 0.0)[0]
+    if impulsive:
         # The blow with which circulation appears is no force of any time: its rate begins at 0.
-        first = advance(flow, begun, 0.0)[0].past.rings[0]
-        past = Past(begun.past.strips, jnp.stack([first, first]))
-        begun = dataclasses.replace(begun, past=past)
+        circulation = first.past.rings[0]
+        past = Past(past.strips, jnp.stack([circulation, circulation]))
     if free is not None:
         # What moves from now on has no velocity before: with that of the law, or with none, the
         # first step would leave an error of first order.
-        moving = advance(flow, begun, 0.0)[0].free
-        assert moving is not None
-        free = dataclasses.replace(free, velocity=moving.velocity)
-    return dataclasses.replace(begun, free=free)
+        assert first.free is not None
+        free = dataclasses.replace(free, velocity=first.free.velocity)
+    return dataclasses.replace(begun, past=past, free=free)
 
 
 @compiled

@@ -17,7 +17,7 @@ from propmdao.aerodynamics.lattice.rings import (
 from propmdao.aerodynamics.solutions.marching.flow import MarchFlow, MarchState
 from propmdao.aerodynamics.solutions.marching.gusts import downstream, mean_of_turn
 from propmdao.aerodynamics.solutions.marching.step import seen_from_each
-from propmdao.aerodynamics.vortices.cores import core_radius, middles
+from propmdao.aerodynamics.vortices.cores import middles
 from propmdao.aerodynamics.wakes.free import (
     FreeWakeState,
     induced_at_nodes,
@@ -32,7 +32,7 @@ from propmdao.aerodynamics.wakes.momentum import (
     lowest_induced_velocity,
     momentum_induced_velocity,
 )
-from propmdao.aerodynamics.wakes.sheets import Sheets
+from propmdao.aerodynamics.wakes.sheets import Sheets, aged_sheets
 from propmdao.aerodynamics.wakes.skewed import sideways_drift
 from propmdao.records.pytrees import Scalar
 from propmdao.records.states import RotorState
@@ -102,12 +102,8 @@ def sheets_at(flow: MarchFlow, free: FreeWakeState | None, w: Array, azimuth: Sc
         nodes = jax.vmap(lambda seen, at: placed(edge, seen, (ages, distance), at, rotor_state))(
             seen_from_each(displacement, case.rotor.n_blades), azimuths
         )
-
-    def core(at: Array) -> Array:
-        radius = core_radius(at, rotor_state, BOUND_CORE * case.rotor.radius)
-        return jnp.broadcast_to(radius, (azimuths.size, radius.size))
-
-    return Sheets(nodes, core(middles(ages)), core(ages[:-1]))
+    core = BOUND_CORE * case.rotor.radius
+    return jax.vmap(lambda seen: aged_sheets(seen, ages, rotor_state, core))(nodes)
 
 
 @compiled

@@ -14,10 +14,10 @@ from propmdao.aerodynamics.solutions.period.lattice import (
 )
 from propmdao.aerodynamics.solutions.period.loads import PeriodBladeLoads, period_loads
 from propmdao.aerodynamics.solutions.period.onset import azimuths_of, tilted_onset
-from propmdao.aerodynamics.vortices.cores import core_radius, middles
 from propmdao.aerodynamics.wakes.helical import helical_wake
 from propmdao.aerodynamics.wakes.history import shedding_delay
 from propmdao.aerodynamics.wakes.momentum import momentum_induced_velocity
+from propmdao.aerodynamics.wakes.sheets import aged_sheets
 from propmdao.aerodynamics.wakes.skewed import sideways_drift
 from propmdao.records.pytrees import Scalar, record
 
@@ -109,18 +109,16 @@ def loads_at(
     case, lattice, n = flow.case, flow.lattice, flow.n_azimuths
     rotor, state = case.rotor, case.state
     edge, ages = lattice.lattice.rings.corner[-1], jnp.asarray(case.wake.ages)
-    core = BOUND_CORE * rotor.radius
     azimuths = jnp.asarray(azimuths_of(n))
     onset = tilted_onset(lattice.lattice, state, induced_velocity, azimuths)
     step = onset.mean_speed * ages[1] / state.rotation_speed
     delay = shedding_delay(lattice.last_panel, step) / onset.mean_speed * state.rotation_speed
+    nodes = helical_wake(edge, case.wake, rotor, state, induced_velocity)
     wake = PeriodWake(
-        nodes=helical_wake(edge, case.wake, rotor, state, induced_velocity),
+        sheets=aged_sheets(nodes, ages, state, BOUND_CORE * rotor.radius),
         drift=sideways_drift(ages, azimuths, state),
         ages=ages,
         delay=delay,
-        trailing_core=core_radius(middles(ages), state, core),
-        shed_core=core_radius(ages[:-1], state, core),
     )
     return period_loads(lattice, wake, onset, state.rotation_speed, state.air, case.sections, start)
 

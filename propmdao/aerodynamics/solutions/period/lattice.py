@@ -10,6 +10,8 @@ solved: with N azimuths, ns strips and np panels N^2 ns np numbers (50 MB for 36
 
 from __future__ import annotations
 
+import dataclasses
+
 import jax
 import jax.numpy as jnp
 import numpy as np
@@ -20,7 +22,7 @@ from propmdao.aerodynamics.rotor_geometry import RotorGeometry
 from propmdao.aerodynamics.solutions.lattice_loads import LatticeGeometry, lattice_geometry
 from propmdao.aerodynamics.vortices.biot_savart import segment_normalwash
 from propmdao.aerodynamics.wakes.history import history_weights
-from propmdao.aerodynamics.wakes.sheets import velocities_of_strips
+from propmdao.aerodynamics.wakes.sheets import Sheets, velocities_of_strips
 from propmdao.geometry.lattice import strip_middle
 from propmdao.records.pytrees import record
 from propmdao.runtime import linear_algebra
@@ -62,35 +64,26 @@ class PeriodWake:
 
     Attributes
     ----------
-    nodes : (ns + 1, n_blades, n_nodes, 3) array
-        Nodes of the filaments before they drift sideways [m].
+    sheets : Sheets
+        Sheets behind all blades before they drift sideways.
     drift : (n_azimuths, n_nodes, 3) array
         Sideways displacement at each azimuth [m].
     ages : (n_nodes,) array
         Azimuths of the nodes behind their blade [rad].
     delay : (ns,) array
         Azimuth by which the circulation of each strip's wake is older than its nodes [rad].
-    trailing_core, shed_core : (n_nodes - 1,) arrays
-        Core radius of the segments along the filaments, and across them at their younger end [m].
     """
 
-    nodes: Array
+    sheets: Sheets
     drift: Array
     ages: Array
     delay: Array
-    trailing_core: Array
-    shed_core: Array
 
     @property
     def weights(self) -> tuple[Array, Array]:
         """Weights of `history_weights`, of rings and shed segments."""
-        return history_weights(self.ages, self.delay, self.drift.shape[0], self.nodes.shape[1])
-
-    @property
-    def cores(self) -> tuple[Array, Array]:
-        """Core radii, trailing and shed, of the segments behind all blades."""
-        n_blades = self.nodes.shape[1]
-        return jnp.tile(self.trailing_core, n_blades), jnp.tile(self.shed_core, n_blades)
+        n_blades = self.sheets.nodes.shape[1]
+        return history_weights(self.ages, self.delay, self.drift.shape[0], n_blades)
 
 
 def period_lattice(rotor: RotorGeometry) -> PeriodLattice:
@@ -196,7 +189,7 @@ def wake_normalwash(lattice: LatticeGeometry, wake: PeriodWake) -> Array:
         Normalwash at an azimuth (first axis) per unit circulation of a strip at another [1/m].
     """
     points, normals = lattice.rings.collocation, lattice.rings.normal
-    (ring, shed), (trailing_core, shed_core) = wake.weights, wake.cores
+    (ring, shed), (trailing_core, shed_core) = wake.weights, wake.sheets.cores
     n_azimuths = ring.shape[1]
 
     # One strip at a time: the block of segments x points stays in cache. The checkpoint keeps
@@ -216,7 +209,7 @@ def wake_normalwash(lattice: LatticeGeometry, wake: PeriodWake) -> Array:
 
     def at_azimuth(place: tuple[Array, Array]) -> Array:
         number, drift = place
-        nodes = wake.nodes + drift
+        nodes = wake.sheets.nodes + drift
         strips = nodes[:-1], nodes[1:], ring, shed
         later = jax.lax.scan(of_strip, by_filament(nodes[0]), strips)[1]
         # From so many azimuths later to the azimuth itself.
@@ -248,7 +241,8 @@ def wake_velocities(points: Array, wake: PeriodWake, circulation: Array) -> Arra
     def at_azimuth(place: tuple[Array, Array]) -> Array:
         number, drift = place
         later = circulation[(jnp.arange(n_azimuths) + number) % n_azimuths]
-        ring, shed = (jnp.einsum("snc,ns->sc", of, later) for of in (of_rings, of_shed))
-        return velocities_of_strips(points, wake.nodes + drift, ring, shed, wake.cores)
+        ring, shed = (jnp.einsum("snc,ns->sc", weights, later) for weights in (of_rings, of_shed))
+        sheets = dataclasses.replace(wake.sheets, nodes=wake.sheets.nodes + drift)
+        return velocities_of_strips(points, sheets, ring, shed)
 
     return jax.lax.map(at_azimuth, (jnp.arange(n_azimuths), wake.drift))
