@@ -115,7 +115,7 @@ def analyze(
     """
     records = {"point": point, "change": change, "model": model, "listening": listening}
     request = Request.of(records, **asked)
-    model = request.model.completed(propeller.transition, propeller.tip)
+    model = request.model.completed(propeller.transition, propeller.tip, propeller.trip)
     request = dataclasses.replace(request, model=model)
     point, listening = request.point, request.listening
     changed = request.change.applied_to(propeller)
@@ -183,7 +183,7 @@ def analyze(
     sound = _tones(panels, loads, case.rotor.n_blades, state, points, fidelity.n_harmonics)
     noise = None
     if model.noise.broadband is not None:
-        flow = flow_of(loads, blade, radii.strips, layers, point.air, model.noise.broadband.trip)
+        flow = flow_of(loads, blade, radii.strips, layers, point.air, model.noise.broadband)
         noise = self_noise(
             flow,
             case.rotor.n_blades,
