@@ -75,55 +75,20 @@ def broadband_noise(case: Case, grid: ObserverGrid) -> dict[str, Array]:
     WopwopFileError
         If a container lacks what the noise needs, in one line.
     """
-    middles = grid.segment_starts + 0.5 * grid.segment
-    shape = (len(grid.position), middles.size, BANDS_HZ.size)
+    there, middles = _hearing(grid)
     parts: dict[str, Array] = {}
     for container in case.broadband:
         noise = container.noise
-        blades = line_blades(container, noise) if isinstance(noise, BpmNoise) else []
-        for i, position in enumerate(grid.position):
-            for k, time in enumerate(middles):
-                there = position + grid.velocity * time
-                emitted = emission_time(container.motion, there, time, case.air)
-                if isinstance(noise, PeggNoise):
-                    spectra = [("pegg", _pegg(container, noise, case.air, there, emitted))]
-                else:
-                    observer = position, grid.velocity
-                    spectra = _sections(container, noise, blades, case.air, observer, emitted)
-                for name, bands in spectra:
-                    parts.setdefault(name, np.zeros(shape))[i, k] += bands
+        emitted = emission_times(container.motion, there, middles, case.air)
+        if isinstance(noise, PeggNoise):
+            spectra = {"pegg": _pegg(container, noise, case.air, there, emitted)}
+        else:
+            spectra = _sections(container, noise, case.air, grid, emitted)
+        for name, bands in spectra.items():
+            parts[name] = parts.get(name, 0.0) + bands
     low, high = grid.band_hz
     inside = (BANDS_HZ >= low) & (BANDS_HZ <= high)
     return {name: np.where(inside, part, 0.0) for name, part in parts.items()}
-
-
-def emission_time(motion: Motion, observer: Array, time: float, air: Air) -> float:
-    """Time at which the origin of a frame, slower than sound, emits what is heard at a time.
-
-    Parameters
-    ----------
-    motion : Motion
-        Motion of the frame.
-    observer : (3,) array
-        Where the observer is then [m].
-    time : float
-        When he hears it [s].
-    air : Air
-        The air.
-
-    Returns
-    -------
-    float
-        Source time [s].
-    """
-    emitted = time
-    for _ in range(_ROUNDS):
-        before = emitted
-        origin = poses(motion, [before]).origin[0]
-        emitted = time - float(np.linalg.norm(observer - origin)) / float(air.sound_speed)
-        if abs(emitted - before) < _SAME_TIME:
-            break
-    return emitted
 
 
 def distances(case: Case, grid: ObserverGrid) -> Array:
@@ -143,25 +108,51 @@ def distances(case: Case, grid: ObserverGrid) -> Array:
     """
     motions = [container.motion for container in case.containers]
     motions += [container.motion for container in case.broadband]
+    there, middles = _hearing(grid)
+    emitted = [emission_times(motion, there, middles, case.air) for motion in motions]
+    return float(case.air.sound_speed) * (middles - np.mean(emitted, axis=0))
+
+
+def _hearing(grid: ObserverGrid) -> tuple[Array, Array]:
+    """Where observers are in the middle of segments, (n_observers, n_segments, 3), and when."""
     middles = grid.segment_starts + 0.5 * grid.segment
-    travelled = np.zeros((len(grid.position), middles.size))
-    for i, position in enumerate(grid.position):
-        for k, time in enumerate(middles):
-            there = position + grid.velocity * time
-            emitted = [emission_time(motion, there, time, case.air) for motion in motions]
-            travelled[i, k] = float(case.air.sound_speed) * (time - np.mean(emitted))
-    return travelled
+    return grid.position[:, None] + grid.velocity * middles[:, None], middles
+
+
+def emission_times(motion: Motion, observers: Array, times: Array, air: Air) -> Array:
+    """Times at which the origin of a frame, slower than sound, emits what observers hear.
+
+    Parameters
+    ----------
+    motion : Motion
+        Motion of the frame.
+    observers : (..., n, 3) array
+        Where the observers are when they hear it [m].
+    times : (n,) array
+        When they hear it [s].
+    air : Air
+        The air.
+
+    Returns
+    -------
+    (..., n) array
+        Source times [s].
+    """
+    emitted = np.broadcast_to(times, observers.shape[:-1])
+    for _ in range(_ROUNDS):
+        before = emitted
+        origin = poses(motion, before.ravel()).origin.reshape(observers.shape)
+        distance = np.linalg.norm(observers - origin, axis=-1)
+        emitted = times - distance / float(air.sound_speed)
+        if np.abs(emitted - before).max() < _SAME_TIME:
+            break
+    return emitted
 
 
 def _sections(
-    container: BroadbandContainer,
-    noise: BpmNoise,
-    blades: list[LineBlade],
-    air: Air,
-    observer: tuple[Array, Array],
-    emitted: float,
-) -> list[tuple[str, Array]]:
-    """Mechanisms of all blades at an observer of this position and velocity, each (n_bands,)."""
+    container: BroadbandContainer, noise: BpmNoise, air: Air, grid: ObserverGrid, emitted: Array
+) -> dict[str, Array]:
+    """Mechanisms of all blades, each (n_observers, n_segments, n_bands)."""
     wanted = {
         "pressure_side": noise.turbulent_edge,
         "suction_side": noise.turbulent_edge,
@@ -170,25 +161,23 @@ def _sections(
         "bluntness": noise.bluntness,
         "tip": noise.tip_vortex,
     }
-    place_there, velocity, bands = map(jnp.asarray, (*observer, BANDS_HZ))
-    by_blade = [
-        moving_self_noise(
-            moving_edges(container, noise, blade, emitted),
-            place_there,
-            velocity,
-            bands,
-            air,
-            noise.trip,
-            noise.tip,
-        )
-        for blade in blades
-    ]
-    return [
-        (name, np.asarray(getattr(mechanisms, name)))
-        for mechanisms in by_blade
-        for name, is_heard in wanted.items()
-        if is_heard
-    ]
+    shape = (*emitted.shape, BANDS_HZ.size)
+    parts = {name: np.zeros(shape) for name, is_heard in wanted.items() if is_heard}
+    velocity, bands = jnp.asarray(grid.velocity), jnp.asarray(BANDS_HZ)
+    for blade in line_blades(container, noise):
+        for place_there in np.ndindex(emitted.shape):
+            mechanisms = moving_self_noise(
+                moving_edges(container, noise, blade, float(emitted[place_there])),
+                jnp.asarray(grid.position[place_there[0]]),
+                velocity,
+                bands,
+                air,
+                noise.trip,
+                noise.tip,
+            )
+            for name, part in parts.items():
+                part[place_there] += np.asarray(getattr(mechanisms, name))
+    return parts
 
 
 def line_blades(container: BroadbandContainer, noise: BpmNoise) -> list[LineBlade]:
@@ -326,9 +315,9 @@ def _in_time(
 
 
 def _pegg(
-    container: BroadbandContainer, noise: PeggNoise, air: Air, observer: Array, emitted: float
+    container: BroadbandContainer, noise: PeggNoise, air: Air, observers: Array, emitted: Array
 ) -> Array:
-    """Third octaves of a rotor by Pegg's method, (n_bands,)."""
+    """Third octaves of a rotor by Pegg's method, (n_observers, n_segments, n_bands)."""
     rate = noise.rotation_speed or abs(container.turning or 0.0)
     axis = container.shaft if noise.axis is None else noise.axis
     if not rate or axis is None:
@@ -337,10 +326,12 @@ def _pegg(
             " rotation = .true., or rotSpeed and hubAxis as 'UserValue'"
         )
     motion = container.shaft_motion if noise.axis is None else container.motion
-    pose = poses(motion, [emitted])
     rotor = LoadedRotor(noise.thrust, rate * noise.blade_radius, noise.blade_area)
     lift = noise.lift_coefficient or rotor.mean_lift_coefficient(air.density)
-    sight = observer - poses(container.motion, [emitted]).origin[0]
-    return np.asarray(
-        pegg_noise(BANDS_HZ, rotor, lift, sight, pose.rotation[0] @ axis, air.sound_speed)
-    )
+    times = emitted.ravel()
+    origin = poses(container.motion, times).origin
+    sight = observers.reshape(-1, 3) - origin
+    # In the frame of the shaft, where its axis stays.
+    turned = np.einsum("tji,tj->ti", poses(motion, times).rotation, sight)
+    spectra = pegg_noise(BANDS_HZ, rotor, lift, turned, axis, air.sound_speed)
+    return np.asarray(spectra).reshape(*emitted.shape, -1)

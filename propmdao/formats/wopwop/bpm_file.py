@@ -78,6 +78,8 @@ def read_bpm_file(path: str | Path) -> BpmFile:
     is there, and the kind of time. Then for periodic data the turns, the period and the steps of a
     turn, for aperiodic data the steps; the constant quantities section by section; and for each
     time the time itself (not in constant data), the angles, the factor of the tip and the speeds.
+    Constant files are read as PSU-WOPWOP reads them: its levels follow from them. Periodic ones are
+    read as VSP2WOPWOP writes them; levels that it has made of one could not be followed.
     """
     path = Path(path)
     data = read_bytes(path, WopwopFileError, complaint=str(path))
