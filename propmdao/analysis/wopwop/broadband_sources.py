@@ -108,6 +108,7 @@ def distances(case: Case, grid: ObserverGrid) -> Array:
     """
     motions = [container.motion for container in case.containers]
     motions += [container.motion for container in case.broadband]
+    motions = motions or [()]  # of a case without sources, from the ground's origin
     there, middles = _hearing(grid)
     emitted = [emission_times(motion, there, middles, case.air) for motion in motions]
     return float(case.air.sound_speed) * (middles - np.mean(emitted, axis=0))
