@@ -16,15 +16,18 @@ from propmdao.acoustics.broadband.pegg import LoadedRotor, pegg_noise
 from propmdao.acoustics.broadband.rotor import StripFlow, rotor_self_noise
 from propmdao.acoustics.broadband.section import Section
 from propmdao.acoustics.broadband.self_noise import tip_noise, trailing_edge_noise
+from propmdao.acoustics.kinematics.motion import translation
 from propmdao.acoustics.levels.decibels import level_db
 from propmdao.analysis.wopwop.broadband_sources import (
     BANDS_HZ,
     broadband_noise,
+    emission_times,
     line_blades,
     moving_edges,
 )
 from propmdao.formats.wopwop.binary import WopwopFileError
 from propmdao.formats.wopwop.cases import read_cases
+from propmdao.records.air import Air
 from propmdao.records.models import SelfNoiseModel
 from propmdao.records.states import RotorState
 
@@ -160,6 +163,61 @@ def test_edges_below_no_thickness_are_sharp_and_told(noise_of):
     with pytest.warns(UserWarning, match="TEThickness is below 0, down to -1e-05 m, at 1 of 9"):
         _, noise = noise_of(group, container={"BPMNoiseFlag": True})
     assert np.isfinite(noise["bluntness"]).all()
+
+
+def bpm_file(path, kind, times, angles):
+    """A file of nine sections with angles of attack at times, and nothing else."""
+    head = [42, 9, 0, 0, 0, 0, 0, 0, 1, 0, kind]
+    data = np.array(head, "<i4").tobytes()
+    if kind == 2:
+        period = np.array(2 * np.pi / 100.0, "<f4").tobytes()
+        data += np.array(1, "<i4").tobytes() + period + np.array(len(times), "<i4").tobytes()
+    if kind == 3:
+        data += np.array(len(times), "<i4").tobytes()
+    rows = [[time, *[angle] * 9] for time, angle in zip(times, angles, strict=True)]
+    path.write_bytes(data + np.array(rows, "<f4").tobytes())
+
+
+def edges_of_file(make_case, tmp_path, kind, times, angles):
+    """Sections of both blades over the turn around time 0, with the angles of a file."""
+    bpm_file(tmp_path / "sections.dat", kind, times, angles)
+    group = BPM | {"SectAOAFlag": "FileValue", "BPMNoiseFile": "sections.dat"}
+    folder = make_case(
+        behind_rotor=[("BPMIn", group)], EnvironmentIn=ON, ContainerIn={"BPMNoiseFlag": True}
+    )
+    (case,) = read_cases(folder)
+    (container,) = case.broadband
+    blades = line_blades(container, container.noise)
+    return [moving_edges(container, container.noise, blade, 0.0) for blade in blades]
+
+
+def test_sections_that_change_around_the_turn_are_taken_at_their_times(make_case, tmp_path):
+    turn = 2 * np.pi / 100.0
+    times = np.linspace(0.0, turn, 361)
+    angles = 0.06 + 0.02 * np.sin(100.0 * times)
+    for edges in edges_of_file(make_case, tmp_path, 2, times, angles):
+        known = 0.06 + 0.02 * np.sin(100.0 * np.asarray(edges.time))
+        assert_allclose(edges.section.angle_of_attack[:, 4], known, atol=1e-5)
+        assert_allclose(edges.tip.angle_of_attack, known, atol=1e-5)
+        assert float(edges.time[-1] - edges.time[0]) == pytest.approx(turn * 47 / 48)
+
+
+def test_sections_that_are_not_known_at_a_time_are_refused(make_case, tmp_path):
+    times = np.linspace(0.0, 0.1, 11)
+    with pytest.raises(WopwopFileError, match="sections are known from 0 to 0.1 s; noise is heard"):
+        edges_of_file(make_case, tmp_path, 3, times, 0.06 + 0.0 * times)
+    around = np.linspace(-0.1, 0.1, 11)
+    edges, _ = edges_of_file(make_case, tmp_path, 3, around, 0.06 + around)
+    assert_allclose(edges.section.angle_of_attack[:, 0], 0.06 + edges.time, atol=1e-6)
+
+
+def test_times_of_emission_are_those_of_sound_that_catches_up():
+    motion = (translation(velocity=[100.0, 0.0, 0.0]),)
+    observers = np.array([[[50.0, 30.0, 0.0], [80.0, 30.0, 0.0]], [[-50.0, 0.0, 4.0]] * 2])
+    times = np.array([0.2, 0.5])
+    found = emission_times(motion, observers, times, Air())
+    way = observers - found[..., None] * np.array([100.0, 0.0, 0.0])
+    assert_allclose(np.linalg.norm(way, axis=-1), 340.294 * (times - found), rtol=1e-6)
 
 
 # Levels of a hovering rotor that PSU-WOPWOP 3.4.3 wrote (case of VSP2WOPWOP at commit 8e5d954,
