@@ -159,9 +159,10 @@ design_lift_coefficient : (n_stations,) arrays
         (default) for the catalogue's.
     broadband : bool
         Add the broadband self-noise of the blades.
-    trip : {"none", "light", "heavy"}
-        Tripping of the boundary layers in broadband noise alone; "none" (default): as in the loads,
-        light where both sides are tripped.
+    trip : {"none", "light", "heavy"}, tuple of these, or None
+        Tripping of the boundary layers in broadband noise alone, everywhere or at the propeller's
+        stations; None (default): as the propeller's description says, or else as in the loads: the
+        fits lightly tripped where both sides are.
     layers : {"sections", "bpm"}
         Boundary layers in broadband noise: of the blade's own sections (default), or the fits of
         NASA RP-1218 to a NACA 0012.
@@ -207,7 +208,7 @@ design_lift_coefficient : (n_stations,) arrays
     def setup(self) -> None:
         options = self.options
         propeller = options["propeller"]
-        model = model_of(options).completed(propeller.transition, propeller.tip)
+        model = model_of(options).completed(propeller.transition, propeller.tip, propeller.trip)
         is_heard = options["observers"] is not None
         if model.noise.broadband is not None and not is_heard:
             raise ValueError("broadband noise is heard at observers; there are none")
@@ -308,7 +309,7 @@ design_lift_coefficient : (n_stations,) arrays
             "broadband",
             BroadbandComp(
                 propeller=propeller,
-                trip=model.noise.broadband.trip,
+                trip=model.noise.broadband.trip if layers is None else None,
                 layers=layers,
                 turbulent_inflow=self.options["turbulent_inflow"],
                 **shared,

@@ -66,7 +66,7 @@ class Asked(TypedDict, total=False):
     start: Start
     wake_motion: WakeMotion
     broadband: bool
-    trip: Trip
+    trip: Trip | tuple[Trip, ...] | None
     layers: Layers
     wake: WakeLaw
     n_crit: float | None
@@ -197,7 +197,8 @@ def _model(places: Mapping[str, dict[str, Any]]) -> Model:
     broadband = places.get("model.noise", {}).get("broadband", False)
     self_noise = places.get("model.noise.broadband", {})
     for name, value in self_noise.items():
-        if value != ASKED[name].default and not broadband:
+        # "none" asks for nothing that silence has not.
+        if value not in (ASKED[name].default, "none") and not broadband:
             raise ValueError(
                 f"{name} {value!r} is about broadband noise: ask for broadband noise, too"
             )

@@ -13,6 +13,7 @@ from jax import Array
 
 from propmdao.acoustics.broadband.self_noise import SelfNoise
 from propmdao.acoustics.kinematics.limits import require_outside_rotor, require_subsonic_tip
+from propmdao.acoustics.kinematics.rings import rings_of
 from propmdao.acoustics.propagation.paths import bands_by_paths, sound_paths, tones_by_paths
 from propmdao.acoustics.signals import Tones
 from propmdao.acoustics.sources.formulation1a import tones
@@ -115,7 +116,7 @@ def analyze(
     """
     records = {"point": point, "change": change, "model": model, "listening": listening}
     request = Request.of(records, **asked)
-    model = request.model.completed(propeller.transition, propeller.tip)
+    model = request.model.completed(propeller.transition, propeller.tip, propeller.trip)
     request = dataclasses.replace(request, model=model)
     point, listening = request.point, request.listening
     changed = request.change.applied_to(propeller)
@@ -183,15 +184,19 @@ def analyze(
     sound = _tones(panels, loads, case.rotor.n_blades, state, points, fidelity.n_harmonics)
     noise = None
     if model.noise.broadband is not None:
-        flow = flow_of(loads, blade, radii.strips, layers, point.air, model.noise.broadband.trip)
+        flow = flow_of(loads, blade, radii.strips, layers, point.air, model.noise.broadband)
+        rings = rings_of(points)
+        is_steady = flow.section.speed.ndim == 1
         noise = self_noise(
             flow,
             case.rotor.n_blades,
             state,
-            points,
+            rings.position if is_steady else points,
             model.noise.broadband,
             turbulence=point.turbulent,
         )
+        if is_steady:
+            noise = jax.tree.map(lambda bands: bands[rings.ring], noise)
         noise = _noise_by_paths(noise, paths, state, listening.surroundings)
     analysis = Analysis(
         propeller=propeller,
@@ -248,7 +253,12 @@ def _tones(
 ) -> Tones:
     """Tones at the ends of all ways to the observers."""
     if isinstance(loads, RotorLoads):
-        return tones(panels, loads.point_loads, n_blades, state, points, n_harmonics)
+        # A steady rotor's field turns with it: each circle of observers is worked out once.
+        rings = rings_of(points)
+        sound = tones(panels, loads.point_loads, n_blades, state, rings.position, n_harmonics)
+        order = n_blades * np.arange(1, n_harmonics + 1)
+        turned = np.exp(1j * rings.azimuth[:, None] * order)
+        return sound.each(lambda amplitude: amplitude[rings.ring] * turned)
     rotor = Rotor(equally_spaced(n_blades), float(state.rotation_speed), panels, loads.point_loads)
     return rotor_tones(rotor, state.velocity, state.air, points, n_harmonics)
 

@@ -49,7 +49,14 @@ def trip_words(model: dict[str, Any]) -> str:
     tripped = any(place is not None and place < 1.0 for place in places)
     if noise["trip"] == "none" and noise["layers"] == "sections" and tripped:
         return "tripped as in the polars"
-    return _TRIPPED[noise["trip"]]
+    if isinstance(noise["trip"], str):
+        return _TRIPPED[noise["trip"]]
+    parts = [
+        f"{_TRIPPED[trip]} ({noise['trip'].count(trip)})"
+        for trip in _TRIPPED
+        if trip in noise["trip"]
+    ]
+    return " and ".join(parts) + " stations"
 
 
 def print_mechanisms(console: Console, analyses: Sequence[dict[str, Any]]) -> None:

@@ -231,10 +231,10 @@ _ASKED = (
         per_node=False, option="--broadband", help="add the broadband self-noise to the tones",
     ),
     Quantity(
-        "trip", "", "tripping of the boundary layers in broadband noise", SELF_NOISE, "none",
+        "trip", "", "tripping of the boundary layers in broadband noise", SELF_NOISE,
         per_node=False, option="--trip", placeholder="{none,light,heavy}",
-        help="tripped boundary layers in the broadband noise alone, default as in the polars:"
-        " none. Untripped ones shed vortices where they separate laminar; a rough or"
+        help="tripped boundary layers in the broadband noise alone; default the propeller's, or as"
+        " in the polars: none. Untripped ones shed vortices where they separate laminar; a rough or"
         " dusty blade sheds none",
     ),
     Quantity(

@@ -153,7 +153,7 @@ def _complete_points(
     propeller: Propeller, points: Iterable[Point], request: Request
 ) -> list[dict[str, Any]]:
     """Points with a value in every column that tells them from others."""
-    same = _same_columns(request)
+    same = _same_columns(propeller, request)
     complete = [_complete(propeller, point) | same for point in points]
     drives = {"rpm" if "rpm" in point else "thrust_required" for point in complete}
     if len(drives) != 1:
@@ -172,14 +172,16 @@ def _columns(
     return point_columns, results
 
 
-def _same_columns(request: Request) -> dict[str, Any]:
+def _same_columns(propeller: Propeller, request: Request) -> dict[str, Any]:
     """Columns of what is asked of all points alike."""
-    loads, broadband = request.model.loads, request.model.noise.broadband
+    model = request.model.completed(propeller.transition, propeller.tip, propeller.trip)
+    loads, broadband = model.loads, model.noise.broadband
+    trip = "none" if broadband is None else broadband.trip
     return {
         "viscous": loads.viscous,
         "stall_delay": loads.stall_delay,
         "broadband": broadband is not None,
-        "trip": "none" if broadband is None else broadband.trip,
+        "trip": " ".join(trip) if isinstance(trip, tuple) else trip,
         "surroundings": str(request.listening.surroundings),
         "settings": " ".join(_other_settings(request)) or "default",
     }
