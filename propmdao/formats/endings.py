@@ -73,6 +73,7 @@ _UIUC = FileFormat(
 PROPELLER_READERS = {
     ".toml": FileFormat("propeller file", "propmdao.formats.toml_files:read_toml"),
     ".pe0": FileFormat("geometry file of APC", "propmdao.formats.blade_tables.pe0:read_pe0"),
+    ".bem": FileFormat("BEM file of OpenVSP", "propmdao.formats.exchange.bem:read_bem"),
     ".csv": FileFormat(
         "table of a blade with heads", "propmdao.formats.blade_tables.csv_table:read_csv"
     ),
@@ -87,7 +88,7 @@ STL_UNITS = {"m": ("metres", 1.0), "mm": ("millimetres", 1000.0)}
 PROPELLER_WRITERS = {
     ".stl": PropellerWriter(
         "closed surface of all blades, outward, binary (no hub), in --units",
-        "propmdao.formats.blades:export_stl",
+        "propmdao.formats.exchange.blades:export_stl",
         "triangles",
         in_units=True,
     ),
@@ -96,13 +97,21 @@ PROPELLER_WRITERS = {
     ),
     ".csv": PropellerWriter(
         "chord, blade angle, thickness, camber, sweep and rake at the stations",
-        "propmdao.formats.blades:export_csv",
+        "propmdao.formats.exchange.blades:export_csv",
     ),
     ".dat": PropellerWriter(
         "section at --section, x and z over chord in Selig's order",
-        "propmdao.formats.blades:export_section",
+        "propmdao.formats.exchange.blades:export_section",
         "points",
         of_section=True,
+    ),
+    ".bem": PropellerWriter(
+        "BEM file of OpenVSP, in metres", "propmdao.formats.exchange.bem:write_bem", "sections"
+    ),
+    ".vspscript": PropellerWriter(
+        "script that builds the blade in OpenVSP with its own sections",
+        "propmdao.formats.exchange.vspscript:write_vspscript",
+        "sections",
     ),
 }
 

@@ -22,12 +22,12 @@ from propmdao.runtime.terminal import print_line
 if TYPE_CHECKING:
     from propmdao.propeller.description import Propeller
 
-_FILES = "\n".join(f"  {ending:<5}  {form.contents}" for ending, form in PROPELLER_WRITERS.items())
+_FILES = "\n".join(f"  {ending:<10}  {form.contents}" for ending, form in PROPELLER_WRITERS.items())
 DESCRIPTION = f"""\
 A propeller in a file that other programs read. The ending says which:
 
 {_FILES}
-  other  folder of a PSU-WOPWOP case: blade, loads at --rpm or --thrust, observers
+  other       folder of a PSU-WOPWOP case: blade, loads at --rpm or --thrust, observers
 """
 
 EXAMPLES = """\
