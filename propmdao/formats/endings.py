@@ -40,15 +40,13 @@ class PropellerWriter(FileFormat):
     ----------
     items : str
         Name of the items that are counted: stations, triangles.
-    of_section : bool
-        True if the file holds one section, whose r/R the function takes as its third argument.
-    in_units : bool
-        True if the file has a unit of length, which the function takes as its third argument.
+    takes : tuple of str
+        Arguments of the function after path and propeller: "section", the r/R of the one section
+        that the file holds; "reynolds", its Reynolds number; "units", the unit of length.
     """
 
     items: str = "stations"
-    of_section: bool = False
-    in_units: bool = False
+    takes: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -64,6 +62,7 @@ class PolarReader(FileFormat):
     several: bool = False
 
 
+_QPROP = FileFormat("propeller file of QPROP or QMIL", "propmdao.formats.exchange.qprop:read_qprop")
 _UIUC = FileFormat(
     "geometry file of UIUC, named like apcsf_9x4.7_geom.txt",
     "propmdao.formats.blade_tables.uiuc:read_named_uiuc_geometry",
@@ -74,6 +73,9 @@ PROPELLER_READERS = {
     ".toml": FileFormat("propeller file", "propmdao.formats.toml_files:read_toml"),
     ".pe0": FileFormat("geometry file of APC", "propmdao.formats.blade_tables.pe0:read_pe0"),
     ".bem": FileFormat("BEM file of OpenVSP", "propmdao.formats.exchange.bem:read_bem"),
+    ".qprop": _QPROP,
+    ".prop": _QPROP,
+    ".xrotor": FileFormat("rotor file of XROTOR", "propmdao.formats.exchange.xrotor:read_xrotor"),
     ".csv": FileFormat(
         "table of a blade with heads", "propmdao.formats.blade_tables.csv_table:read_csv"
     ),
@@ -90,7 +92,7 @@ PROPELLER_WRITERS = {
         "closed surface of all blades, outward, binary (no hub), in --units",
         "propmdao.formats.exchange.blades:export_stl",
         "triangles",
-        in_units=True,
+        ("units",),
     ),
     ".toml": PropellerWriter(
         "propeller file, as propmdao reads it", "propmdao.formats.toml_files:write_toml"
@@ -103,10 +105,23 @@ PROPELLER_WRITERS = {
         "section at --section, x and z over chord in Selig's order",
         "propmdao.formats.exchange.blades:export_section",
         "points",
-        of_section=True,
+        ("section",),
+    ),
+    ".txt": PropellerWriter(
+        "polar of the section at --section and --reynolds, as XFOIL, XFLR5, QBlade and JBLADE have"
+        " it",
+        "propmdao.formats.exchange.section_polar:export_polar",
+        "angles",
+        ("section", "reynolds"),
     ),
     ".bem": PropellerWriter(
         "BEM file of OpenVSP, in metres", "propmdao.formats.exchange.bem:write_bem", "sections"
+    ),
+    ".qprop": PropellerWriter(
+        "propeller file of QPROP", "propmdao.formats.exchange.qprop:write_qprop"
+    ),
+    ".xrotor": PropellerWriter(
+        "rotor file of XROTOR", "propmdao.formats.exchange.xrotor:write_xrotor"
     ),
     ".vspscript": PropellerWriter(
         "script that builds the blade in OpenVSP with its own sections",

@@ -23,6 +23,8 @@ if TYPE_CHECKING:
     from propmdao.propeller.description import Propeller
 
 _FILES = "\n".join(f"  {ending:<10}  {form.contents}" for ending, form in PROPELLER_WRITERS.items())
+#: Options without which some files cannot be written, and what they are of.
+_NEEDED = {"section": "section", "reynolds": "Reynolds number"}
 DESCRIPTION = f"""\
 A propeller in a file that other programs read. The ending says which:
 
@@ -35,6 +37,7 @@ examples:
   propmdao export apcsf_11x4.7 --to blades.stl --units mm
   propmdao export apcsf_11x4.7 --to my_blade.toml
   propmdao export apcsf_11x4.7 --section 0.75 --to section_75.dat
+  propmdao export apcsf_11x4.7 --section 0.75 --reynolds 1e5 --to polar_75.txt
   propmdao export apcsf_11x4.7 --rpm 4200 --speed 8 --arc 1.905 -45 0 --to my_case
 
 Axes: z toward thrust, blade 1 along x, rotation from x to y. Exit status: 0, or 2 with one line on
@@ -63,7 +66,10 @@ def add_export(commands: argparse._SubParsersAction[Any]) -> None:
         "--to", type=Path, required=True, metavar="FILE", help="what is written or replaced"
     )
     command.add_argument(
-        "--section", type=number, metavar="R_OVER_R", help="r/R of the section in a .dat file"
+        "--section", type=number, metavar="R_OVER_R", help="r/R of the section in a .dat or .txt"
+    )
+    command.add_argument(
+        "--reynolds", type=number, metavar="RE", help="Reynolds number of the polar in a .txt file"
     )
     command.add_argument(
         "--units", choices=STL_UNITS, help="unit of length of an .stl file, m by default"
@@ -82,13 +88,14 @@ def _export(options: argparse.Namespace) -> None:
             f"--to {path}: there is no export to {ending!r}; a file ends in"
             f" {', '.join(PROPELLER_WRITERS)}, a PSU-WOPWOP case (--rpm, --thrust) in no such"
         )
-    if (options.section is not None) != (writer is not None and writer.of_section):
-        sections = " or ".join(e for e, form in PROPELLER_WRITERS.items() if form.of_section)
-        raise ValueError(
-            f"a {sections} file is of one section, and only that has --section R_OVER_R"
-        )
-    if options.units is not None and (writer is None or not writer.in_units):
-        raise ValueError("--units is of an .stl file: all else is in metres")
+    takes = () if writer is None else writer.takes
+    for name, what in _NEEDED.items():
+        if (getattr(options, name) is not None) != (name in takes):
+            files = " or ".join(e for e, form in PROPELLER_WRITERS.items() if name in form.takes)
+            raise ValueError(f"a {files} file is of one {what}, and only that has --{name}")
+    if options.units is not None and "units" not in takes:
+        files = " or ".join(e for e, form in PROPELLER_WRITERS.items() if "units" in form.takes)
+        raise ValueError(f"--units is of an {files} file: all else is in metres")
     if writer is not None and driven:
         raise ValueError(f"a {ending} file holds no loads: --rpm and --thrust do not go along")
     if writer is None and not driven:
@@ -108,9 +115,9 @@ def _export(options: argparse.Namespace) -> None:
         return
     propeller = Change(options.twist_offset_deg).applied_to(propeller)
     unit = options.units or "m"
-    third = [options.section] if writer.of_section else [unit] if writer.in_units else []
-    n_items = writer(path, propeller, *third)
-    lengths = f", {STL_UNITS[unit][0]}" if writer.in_units else ""
+    arguments = {**vars(options), "units": unit}
+    n_items = writer(path, propeller, *[arguments[name] for name in takes])
+    lengths = f", {STL_UNITS[unit][0]}" if "units" in takes else ""
     print_line(f"{path}: {propeller.name}, {n_items} {writer.items}{lengths}")
 
 

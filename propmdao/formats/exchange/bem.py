@@ -17,17 +17,17 @@ from pathlib import Path
 import numpy as np
 
 from propmdao.formats.blade_tables.assumptions import AssumedBladeWarning
+from propmdao.formats.exchange.naca_sections import (
+    AIRFOIL,
+    camber_of_design_lift,
+    camber_of_zero_lift,
+)
 from propmdao.formats.exchange.vsp_blade import (
     FloatArray,
     VspBlade,
     contours,
     quarter_chord,
     vsp_blade,
-)
-from propmdao.propeller.airfoils.airfoil import (
-    DESIGN_LIFT_WEIGHTS,
-    ZERO_LIFT_WEIGHTS,
-    naca4_camber_line,
 )
 from propmdao.propeller.airfoils.coordinates import airfoil_from_coordinates
 from propmdao.propeller.checks import MOST_STATIONS, PropellerError
@@ -41,7 +41,6 @@ _COLUMNS = tuple(field.name for field in dataclasses.fields(VspBlade))
 _SECTIONS, _BLADES, _DIAMETER = "Num_Sections", "Num_Blade", "Diameter"
 _BETA, _FEATHER, _CONE = "Beta 3/4 (deg)", "Feather (deg)", "Pre_Cone (deg)"
 _CONTOUR = re.compile(r"Section \d+ X, Y")
-_AIRFOIL, _CAMBER_POSITION = "naca4412", 0.4
 
 
 def write_bem(path: str | os.PathLike[str], propeller: Propeller) -> int:
@@ -135,12 +134,10 @@ def read_bem(path: str | os.PathLike[str]) -> Propeller:
     if not radius[-1] > 0.0:
         raise PropellerError(f"{path}: Radius/R must end above 0; it ends at {radius[-1]:g}")
     zero_lift = _zero_lift_angles(path, lines[end:], n_sections)
-    line = naca4_camber_line(1.0, _CAMBER_POSITION)
-    line /= line.max()
     camber = (
-        blade.design_lift / (line @ DESIGN_LIFT_WEIGHTS)
+        camber_of_design_lift(blade.design_lift)
         if zero_lift is None
-        else zero_lift / (line @ ZERO_LIFT_WEIGHTS)
+        else camber_of_zero_lift(zero_lift)
     )
     tip = float(radius[-1])
     try:
@@ -151,7 +148,7 @@ def read_bem(path: str | os.PathLike[str]) -> Propeller:
             r_over_R=radius / tip,
             c_over_R=blade.chord / tip,
             beta_deg=blade.twist + feather,
-            airfoils=[(1.0, _AIRFOIL)],
+            airfoils=[(1.0, AIRFOIL)],
             thickness_over_chord=blade.thickness,
             camber_over_chord=camber,
             sweep_over_R=aft / tip,

@@ -86,8 +86,8 @@ def test_a_case_of_psu_wopwop_is_read_again(tmp_path: Path, name: str) -> None:
     [
         ("--to b.step", "there is no export to '.step'; a file ends in .stl, .toml, .csv, .dat"),
         ("--to no/b.stl", "there is no folder no"),
-        ("--to b.dat", "a .dat file is of one section"),
-        ("--to b.csv --section 0.5", "a .dat file is of one section"),
+        ("--to b.dat", "a .dat or .txt file is of one section"),
+        ("--to b.csv --section 0.5", "a .dat or .txt file is of one section"),
         ("--to b.dat --section 0.01", "r_over_R must be within the blade's stations"),
         ("--to b.stl --rpm 4000", "a .stl file holds no loads"),
         ("--to b.csv --units mm", "--units is of an .stl file"),
