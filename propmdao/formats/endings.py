@@ -42,7 +42,8 @@ class PropellerWriter(FileFormat):
         Name of the items that are counted: stations, triangles.
     takes : tuple of str
         Arguments of the function after path and propeller: "section", the r/R of the one section
-        that the file holds; "reynolds", its Reynolds number; "units", the unit of length.
+        that the file holds; "reynolds", its Reynolds number; "units", the unit of length; "hub",
+        diameter and height of a hub, or None.
     """
 
     items: str = "stations"
@@ -86,6 +87,13 @@ PROPELLER_READERS = {
 #: Units of STL files: the name of each, and how many of it are a metre.
 STL_UNITS = {"m": ("metres", 1.0), "mm": ("millimetres", 1000.0)}
 
+_STEP = PropellerWriter(
+    "solid blades for CAD in millimetres, with section curves, and --hub (extra cad)",
+    "propmdao.formats.exchange.step:export_step",
+    "solids",
+    ("hub",),
+)
+
 #: Writers of propellers: functions of a path and a `Propeller`.
 PROPELLER_WRITERS = {
     ".stl": PropellerWriter(
@@ -94,6 +102,8 @@ PROPELLER_WRITERS = {
         "triangles",
         ("units",),
     ),
+    ".step": _STEP,
+    ".stp": _STEP,
     ".toml": PropellerWriter(
         "propeller file, as propmdao reads it", "propmdao.formats.toml_files:write_toml"
     ),

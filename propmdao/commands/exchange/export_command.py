@@ -35,6 +35,7 @@ A propeller in a file that other programs read. The ending says which:
 EXAMPLES = """\
 examples:
   propmdao export apcsf_11x4.7 --to blades.stl --units mm
+  propmdao export apcsf_11x4.7 --to propeller.step --hub 30 10
   propmdao export apcsf_11x4.7 --to my_blade.toml
   propmdao export apcsf_11x4.7 --section 0.75 --to section_75.dat
   propmdao export apcsf_11x4.7 --section 0.75 --reynolds 1e5 --to polar_75.txt
@@ -74,6 +75,13 @@ def add_export(commands: argparse._SubParsersAction[Any]) -> None:
     command.add_argument(
         "--units", choices=STL_UNITS, help="unit of length of an .stl file, m by default"
     )
+    command.add_argument(
+        "--hub",
+        type=number,
+        nargs=2,
+        metavar=("DIAMETER", "HEIGHT"),
+        help="hub of a .step file [mm], fused with the blades",
+    )
     names = ("rpm", "thrust", "speed", "incidence_deg", "density", "twist_offset_deg", "viscous")
     add_asked(command, names, required=False)
     add_observers(command)
@@ -95,7 +103,9 @@ def _export(options: argparse.Namespace) -> None:
             raise ValueError(f"a {files} file is of one {what}, and only that has --{name}")
     if options.units is not None and "units" not in takes:
         files = " or ".join(e for e, form in PROPELLER_WRITERS.items() if "units" in form.takes)
-        raise ValueError(f"--units is of an {files} file: all else is in metres")
+        raise ValueError(f"--units is of an {files} file: of all else the unit is settled")
+    if options.hub is not None and "hub" not in takes:
+        raise ValueError("--hub is of a .step file: nothing else has one")
     if writer is not None and driven:
         raise ValueError(f"a {ending} file holds no loads: --rpm and --thrust do not go along")
     if writer is None and not driven:

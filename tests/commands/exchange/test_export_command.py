@@ -84,7 +84,7 @@ def test_a_case_of_psu_wopwop_is_read_again(tmp_path: Path, name: str) -> None:
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
-        ("--to b.step", "there is no export to '.step'; a file ends in .stl, .toml, .csv, .dat"),
+        ("--to b.iges", "there is no export to '.iges'; a file ends in .stl, .step, .stp, .toml"),
         ("--to no/b.stl", "there is no folder no"),
         ("--to b.dat", "a .dat or .txt file is of one section"),
         ("--to b.csv --section 0.5", "a .dat or .txt file is of one section"),
@@ -92,6 +92,8 @@ def test_a_case_of_psu_wopwop_is_read_again(tmp_path: Path, name: str) -> None:
         ("--to b.stl --rpm 4000", "a .stl file holds no loads"),
         ("--to b.csv --units mm", "--units is of an .stl file"),
         ("--to case --rpm 4000 --units mm", "--units is of an .stl file"),
+        ("--to b.stl --hub 30 10", "--hub is of a .step file"),
+        ("--to b.txt --section 0.7", "a .txt file is of one Reynolds number"),
         ("--to case", "it needs --rpm or --thrust"),
         ("--to case --rpm 4000", "a PSU-WOPWOP case needs observers"),
         ("", "required: --to"),
