@@ -128,7 +128,8 @@ def _export(options: argparse.Namespace) -> None:
     arguments = {**vars(options), "units": unit}
     n_items = writer(path, propeller, *[arguments[name] for name in takes])
     lengths = f", {STL_UNITS[unit][0]}" if "units" in takes else ""
-    print_line(f"{path}: {propeller.name}, {n_items} {writer.items}{lengths}")
+    items = writer.items.removesuffix("s") if n_items == 1 else writer.items
+    print_line(f"{path}: {propeller.name}, {n_items} {items}{lengths}")
 
 
 def _write_case(options: argparse.Namespace, propeller: Propeller) -> None:
