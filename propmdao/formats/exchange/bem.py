@@ -20,10 +20,9 @@ from propmdao.formats.blade_tables.assumptions import AssumedBladeWarning
 from propmdao.formats.exchange.naca_sections import (
     AIRFOIL,
     camber_of_design_lift,
-    camber_of_zero_lift,
+    section_of_contour,
 )
 from propmdao.formats.exchange.vsp_blade import (
-    FloatArray,
     VspBlade,
     contours,
     quarter_chord,
@@ -104,10 +103,10 @@ def read_bem(path: str | os.PathLike[str]) -> Propeller:
     -------
     Propeller
         The propeller, named after the file, its quarter chord and blade angle where OpenVSP puts
-        them with rake, skew, sweep, feather and cone. Its sections are of the NACA 4-digit
-        series: of the thickness of the table, and of the camber that has the zero-lift angle of
-        the file's contour by thin-airfoil theory, or the design lift of the table where the file
-        holds no contours. An `AssumedBladeWarning` says so.
+        them with rake, skew, sweep, feather and cone. Its sections have the thickness of the table.
+        Contours that are sections of the catalogue become these; others, and files without
+        contours, NACA 4-digit sections of the camber that has the zero-lift angle of the contour
+        by thin-airfoil theory, or the design lift of the table. An `AssumedBladeWarning` says so.
 
     Raises
     ------
@@ -133,12 +132,11 @@ def read_bem(path: str | os.PathLike[str]) -> Propeller:
     radius, aft, up = quarter_chord(blade, feather, _angle(path, header, _CONE))
     if not radius[-1] > 0.0:
         raise PropellerError(f"{path}: Radius/R must end above 0; it ends at {radius[-1]:g}")
-    zero_lift = _zero_lift_angles(path, lines[end:], n_sections)
-    camber = (
-        camber_of_design_lift(blade.design_lift)
-        if zero_lift is None
-        else camber_of_zero_lift(zero_lift)
-    )
+    sections = _sections(path, lines[end:], n_sections)
+    airfoils, camber, camber_of = [AIRFOIL], camber_of_design_lift(blade.design_lift), "design lift"
+    if sections is not None:
+        airfoils, camber = [name for name, _ in sections], np.array([c for _, c in sections])
+        camber_of = "zero-lift angle"
     tip = float(radius[-1])
     try:
         propeller = Propeller(
@@ -148,7 +146,7 @@ def read_bem(path: str | os.PathLike[str]) -> Propeller:
             r_over_R=radius / tip,
             c_over_R=blade.chord / tip,
             beta_deg=blade.twist + feather,
-            airfoils=[(1.0, AIRFOIL)],
+            airfoils=list(zip(radius[-len(airfoils) :] / tip, airfoils, strict=True)),
             thickness_over_chord=blade.thickness,
             camber_over_chord=camber,
             sweep_over_R=aft / tip,
@@ -157,10 +155,11 @@ def read_bem(path: str | os.PathLike[str]) -> Propeller:
         )
     except PropellerError as error:
         raise PropellerError(f"{path}: {error}") from error
-    camber_of = "design lift" if zero_lift is None else "zero-lift angle"
+    n_naca = n_sections if sections is None else airfoils.count(AIRFOIL)
+    naca = f"; NACA 4-digit sections of the file's thickness and {camber_of} at {n_naca} of "
+    naca += f"{n_sections} stations"
     warnings.warn(
-        f"{path}: assumed, for the file does not say: lengths in metres; NACA 4-digit sections of "
-        f"the file's thickness and {camber_of}",
+        f"{path}: assumed, for the file does not say: lengths in metres{naca if n_naca else ''}",
         AssumedBladeWarning,
         stacklevel=4,  # past the table of readers and `load_propeller`
     )
@@ -211,8 +210,8 @@ def _row(path: Path, number: int, lines: list[str]) -> list[float]:
     return [finite_number(field, PropellerError, where) for field in fields]
 
 
-def _zero_lift_angles(path: Path, lines: list[str], n_sections: int) -> FloatArray | None:
-    """Zero-lift angle of each contour by thin-airfoil theory [rad]; None where there is none."""
+def _sections(path: Path, lines: list[str], n_sections: int) -> list[tuple[str, float]] | None:
+    """Airfoil and camber of each section by its contour; None where there are no contours."""
     points: list[list[list[float]]] = []
     for line in lines:
         if _CONTOUR.fullmatch(line):
@@ -227,10 +226,9 @@ def _zero_lift_angles(path: Path, lines: list[str], n_sections: int) -> FloatArr
     if len(points) != n_sections:
         raise PropellerError(f"{path}: {n_sections} sections expected; {len(points)} have contours")
     try:
-        angles = [
-            airfoil_from_coordinates(f"section {k}", *np.transpose(contour)).zero_lift_angle
+        return [
+            section_of_contour(airfoil_from_coordinates(f"section {k}", *np.transpose(contour)))
             for k, contour in enumerate(points)
         ]
     except ValueError as error:
         raise PropellerError(f"{path}: {error}") from error
-    return np.array(angles)

@@ -19,6 +19,7 @@ from propmdao.formats.exchange.vspscript import write_vspscript
 from propmdao.formats.propellers import load_propeller
 from propmdao.geometry.blade import Blade, span_interpolation
 from propmdao.geometry.surface import surface_nodes
+from propmdao.propeller.airfoils.airfoil import Airfoil
 from propmdao.propeller.airfoils.library import find_airfoil
 from propmdao.propeller.checks import PropellerError
 from propmdao.propeller.description import Propeller
@@ -113,7 +114,9 @@ def test_a_bem_file_has_the_lines_that_openvsp_scans_for(bem: Path) -> None:
 
 
 def test_a_round_trip_keeps_the_blade_and_its_naca_sections(bem: Path) -> None:
-    with pytest.warns(AssumedBladeWarning, match="metres; NACA 4-digit .* and zero-lift angle"):
+    with pytest.warns(
+        AssumedBladeWarning, match="metres; NACA 4-digit .* and zero-lift angle at 5 of 5"
+    ):
         back = load_propeller(bem)
     assert (back.name, back.diameter, back.n_blades) == ("swept", 0.3, 3)
     for key in ("r_over_R", "c_over_R", "beta_deg", "sweep_over_R", "rake_over_R"):
@@ -122,22 +125,39 @@ def test_a_round_trip_keeps_the_blade_and_its_naca_sections(bem: Path) -> None:
                                atol=3e-4)  # fmt: skip
 
 
-def test_other_sections_keep_thickness_and_zero_lift_angle(tmp_path: Path) -> None:
+def test_sections_of_the_catalogue_come_back(tmp_path: Path) -> None:
+    """E63 to Clark-Y: the ends are known again, what is blended is not."""
+    ends = ((0.0, "e63"), (0.45, "e63"), (0.85, "clarky"), (1.0, "clarky"))
+    blade = dataclasses.replace(SWEPT, airfoils=ends, thickness_over_chord=np.full(5, 0.08))
+    write_bem(tmp_path / "known.bem", blade)
+    with pytest.warns(AssumedBladeWarning, match="zero-lift angle at 1 of 5 stations"):
+        back = read_bem(tmp_path / "known.bem")
+    assert [name for _, name in back.airfoils] == ["e63", "e63", "naca4412", "clarky", "clarky"]
+    ours, theirs = nodes_of(blade, SWEPT.r_over_R), nodes_of(back, SWEPT.r_over_R)
+    np.testing.assert_allclose(theirs[[0, 1, 3, 4]], ours[[0, 1, 3, 4]], atol=1e-4)
     write_bem(tmp_path / "e63.bem", dataclasses.replace(SWEPT, airfoils=[(1.0, "e63")]))
+    with pytest.warns(AssumedBladeWarning, match="lengths in metres$"):
+        read_bem(tmp_path / "e63.bem")
+
+
+def test_other_sections_keep_thickness_and_zero_lift_angle(tmp_path: Path) -> None:
+    blade = dataclasses.replace(SWEPT, airfoils=[(0.2, "e63"), (1.0, "clarky")])
+    write_bem(tmp_path / "blend.bem", blade)
     with pytest.warns(AssumedBladeWarning):
-        back = read_bem(tmp_path / "e63.bem")
-    blade = Blade.from_propeller(back)
-    e63 = find_airfoil("e63")
-    ratio = find_airfoil("naca4412").zero_lift_angle / find_airfoil("naca4412").max_camber
-    camber = np.asarray(blade.camber_over_chord)
-    np.testing.assert_allclose(camber * ratio, e63.zero_lift_angle, rtol=1e-5)
-    np.testing.assert_allclose(blade.thickness_over_chord, e63.max_thickness, rtol=1e-6)
+        back = read_bem(tmp_path / "blend.bem")
+    camber, thickness = (lines[2] for lines in blade.sections())  # blended half and half or so
+    section = Airfoil("blend", camber, thickness)
+    naca = find_airfoil("naca4412")
+    read = Blade.from_propeller(back)
+    angle = float(read.camber_over_chord[2]) * naca.zero_lift_angle / naca.max_camber
+    assert angle == pytest.approx(section.zero_lift_angle, rel=1e-5)
+    assert float(read.thickness_over_chord[2]) == pytest.approx(section.max_thickness, rel=1e-6)
 
 
 def test_without_contours_the_design_lift_counts(bem: Path, tmp_path: Path) -> None:
     path = tmp_path / "bare.bem"
     path.write_text(bem.read_text().split("\nSection 0")[0])
-    with pytest.warns(AssumedBladeWarning, match="thickness and design lift"):
+    with pytest.warns(AssumedBladeWarning, match="thickness and design lift at 5 of 5 stations"):
         back = read_bem(path)
     np.testing.assert_allclose(
         back.camber_over_chord, Blade.from_propeller(SWEPT).camber_over_chord, rtol=2e-3
