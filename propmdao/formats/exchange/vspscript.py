@@ -32,7 +32,7 @@ _CURVES = {
 }
 #: A function of the script that gives a section its radius and its contour.
 _SECTION = """\
-void SetSection( string prop, int index, double radius, array<double> @x, array<double> @z )
+void SetSection( string prop, int index, double radius, array<double> &in x, array<double> &in z )
 {
     string surface = GetXSecSurf( prop, 0 );
     ChangeXSecShape( surface, index, XS_FILE_AIRFOIL );

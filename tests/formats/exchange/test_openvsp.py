@@ -12,6 +12,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from scipy.interpolate import CubicSpline, PchipInterpolator
 
 from propmdao.formats.blade_tables.assumptions import AssumedBladeWarning
 from propmdao.formats.exchange.bem import read_bem, write_bem
@@ -242,6 +243,18 @@ def test_the_script_builds_the_same_surface(tmp_path: Path) -> None:
         np.testing.assert_allclose(
             placed(row, np.stack([arrays["x"], z], axis=1), 0.0, 0.0), ours[k], atol=2e-4
         )
+
+
+def test_monotone_cubics_of_the_script_are_near_our_splines(tmp_path: Path) -> None:
+    """OpenVSP runs through the points of a curve by PCHIP."""
+    path = tmp_path / "blade.vspscript"
+    blade = load_propeller("apcsf_11x4.7")
+    write_vspscript(path, blade)
+    arrays = arrays_of(path.read_text())
+    r = np.linspace(blade.r_over_R[0], 1.0, 500)
+    for name, ours, close in (("chord", blade.c_over_R, 5e-4), ("twist", blade.beta_deg, 0.05)):
+        theirs = PchipInterpolator(arrays["r"], arrays[name])(r)
+        np.testing.assert_allclose(theirs, CubicSpline(blade.r_over_R, ours)(r), atol=close)
 
 
 def test_a_name_cannot_break_out_of_the_script(tmp_path: Path) -> None:
