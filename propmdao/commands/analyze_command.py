@@ -22,6 +22,7 @@ from propmdao.commands.options import (
     asked_of,
     number,
 )
+from propmdao.commands.output.drives import add_drive, add_drive_results, motor_of
 from propmdao.commands.output.json_output import print_json
 from propmdao.commands.output.output_files import (
     require_matplotlib,
@@ -64,6 +65,7 @@ examples:
   propmdao analyze apcsf_11x4.7 --thrust 1.5 --speed 8 --arc 1.905 -45 --broadband
   propmdao analyze my_blade.toml --rpm 3000:5000:500 --arc 1.905 -45 0 45 --json
   propmdao analyze apcsf_11x4.7 --rpm 4200 --arc 1.905 -45 --band
+  propmdao analyze apcsf_11x4.7 --thrust 3 --motor axi_2204_54 --battery-wh 12
   propmdao analyze apcsf_11x4.7 --rpm 4200 --arc 1.905 -45 --broadband --wav hover.wav
   propmdao analyze apcsf_11x4.7 --rpm 4200 --ground 10 --grid 0:40:5 0 -10 --absorption
   propmdao analyze apcsf_11x4.7 --rpm 4200 --speed 8 --level --hemisphere 20 10 --figures results
@@ -123,6 +125,7 @@ def add_analyze(commands: argparse._SubParsersAction[Any]) -> None:
         " eight solutions more",
     )
     command.add_argument("--json", action="store_true", help="print JSON instead of tables")
+    add_drive(command)
     add_observers(command)
     add_surroundings(command)
     tables = command.add_argument_group("tables", "CSV files with units in their heads.")
@@ -187,6 +190,7 @@ def add_analyze(commands: argparse._SubParsersAction[Any]) -> None:
 
 def _analyze(options: argparse.Namespace) -> None:
     _check(options)
+    motor = motor_of(options)
     listening = listening_of(options, options.incidence_deg)
     _check_observers(options, len(listening.observers))
     asked = asked_of(options) | air_of(options) | {"listening": listening}
@@ -225,6 +229,7 @@ def _analyze(options: argparse.Namespace) -> None:
         sources |= {name: files[key] for name in sources if (key := _key(name, files))}
         analyses = [dataclasses.replace(analysis, polars=sources) for analysis in analyses]
     results = [analysis.to_dict() for analysis in analyses]
+    add_drive_results(results, motor, options)
     if options.band:
         from propmdao.analysis.uncertainty import band
 

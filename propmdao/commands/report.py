@@ -11,6 +11,7 @@ from rich.table import Table
 
 from propmdao.commands.broadband_report import print_mechanisms, trip_words
 from propmdao.commands.output.band_tables import print_bands
+from propmdao.commands.output.drives import drive_lines
 from propmdao.commands.output.marches import march_lines
 from propmdao.commands.output.tables import level_cell, narrow_table, number_cell
 from propmdao.records.listening import Surroundings
@@ -47,7 +48,7 @@ def print_analyses(analyses: Sequence[dict[str, Any]]) -> None:
         print_mechanisms(console, analyses)
     else:
         console.print("No observers: --arc RADIUS ELEVATION... adds their noise.\n")
-    for line in march_lines(analyses):
+    for line in [*march_lines(analyses), *drive_lines(analyses)]:
         print_line(line)
     print_doubts(analyses)
     print_bands(console, analyses)

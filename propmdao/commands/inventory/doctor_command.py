@@ -34,6 +34,7 @@ EXTRAS = {
     "parallel": ("distributed", "mpi4py"),
     "mission": ("dymos",),
     "completion": ("shtab",),
+    "cad": ("OCP",),
 }
 
 
