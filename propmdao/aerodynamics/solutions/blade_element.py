@@ -42,7 +42,8 @@ from propmdao.records.loads import PointLoads
 from propmdao.records.pytrees import Scalar, record
 from propmdao.runtime.compilation import compiled
 
-_TOLERANCE = 1.0e-6  # relative, in the inflow angle, before the last step
+# Relative, in the inflow angle, before the last step: derivatives are taken there.
+_TOLERANCE = 1.0e-10
 # The swirl of an annulus that no air passes would be infinite: |sin phi| is kept above this,
 # smoothly. At an inflow angle of 3 deg it changes the momentum by 0.02 %.
 _LEAST_SINE = 1.0e-3
