@@ -80,7 +80,7 @@ def design_problem(
     n_control : int
         Number of control points of each distribution.
     **options
-        Further options of `PropellerGroup`: fidelity, n_crit, trip and so on.
+        Further options of `PropellerGroup`: blade_element, fidelity, n_crit, trip and so on.
 
     Returns
     -------
@@ -101,6 +101,9 @@ def design_problem(
     limits = dict(limits or {})
     n_observers = 0 if observers is None else len(np.asarray(observers))
     ranges = require_words(points, free, minimise, limits, n_control, n_observers)
+    if options.get("blade_element"):
+        for point in points:
+            point.require_axial("a rotor by blade elements")
     responses = {word: RESPONSES[word] for word in (minimise, *limits) if word in RESPONSES}
     noisy = any(response.is_noise for response in responses.values())
     radii = np.linspace(propeller.r_over_R[0], 1.0, n_control)

@@ -33,6 +33,7 @@ TRANSITION_OPTIONS = ("n_crit", "trip_upper", "trip_lower")
 MODEL_OPTIONS = (
     *_RECORDS,
     "viscous",
+    "blade_element",
     "stall_delay",
     *TRANSITION_OPTIONS,
     "unsteady",

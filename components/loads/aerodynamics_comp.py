@@ -1,4 +1,4 @@
-"""Vortex lattice and operating point to thrust, torque and blade loads."""
+"""Blade and operating point to thrust, torque and blade loads, by vortex lattice or elements."""
 
 from __future__ import annotations
 
@@ -21,6 +21,7 @@ from propmdao.aerodynamics.wakes.helical import wake_transport
 from propmdao.components.bases.array_function import Arrays, evaluate
 from propmdao.components.bases.nodes_comp import NodesComp
 from propmdao.components.bases.root_component import RootComponent
+from propmdao.components.inputs.model_options import declare_model
 from propmdao.components.inputs.point_inputs import add_point_inputs, state_at
 from propmdao.components.inputs.rotor_inputs import (
     RotorConstants,
@@ -107,6 +108,9 @@ class AerodynamicsComp(NodesComp, RootComponent):
     loads : bool
         True (default): the loads along the blade, `circulation` and those below it, are outputs.
         Without them derivatives are cheap where many are asked for, as missions do.
+    blade_element : bool
+        Blade elements in annuli instead of the lattice, in axial flight: much faster, less
+        accurate. `circulation` has one row then. False by default.
     n_blades : int
         Number of equally spaced blades.
     fidelity : Fidelity
@@ -125,6 +129,8 @@ class AerodynamicsComp(NodesComp, RootComponent):
         If an input or a result is not finite, rotation or flight backwards, the incidence beyond
         its range, diameter or a property of the air not positive, or the solution does not
         converge; the message has the reason and, with `num_nodes`, the node.
+    ValueError
+        If `blade_element` and `tilted` are asked for together.
 
     Warns
     -----
@@ -139,13 +145,15 @@ class AerodynamicsComp(NodesComp, RootComponent):
         self.options.declare("loads", True, types=bool, desc="loads are outputs")
         declare_rotor(self.options)
         declare_tilted(self.options)
+        declare_model(self.options, ["blade_element"])
 
     def setup(self) -> None:
         fidelity, tilted = self.options["fidelity"], self.options["tilted"]
         n_blades = self.options["n_blades"]
-        self.static = RotorKind(n_blades)
-        if tilted:
-            self.static = RotorKind(n_blades, azimuths_for(fidelity.n_azimuths, n_blades))
+        n_azimuths = azimuths_for(fidelity.n_azimuths, n_blades) if tilted else None
+        self.static = RotorKind(n_blades, n_azimuths, self.options["blade_element"])
+        if self.static.blade_element and tilted:
+            raise ValueError("blade elements are of axial flight: tilted must be False")
         grid = fidelity.period_wake if tilted else fidelity.wake
         self.constants = add_rotor_inputs(self, grid)
         self.search_constants = self._search_constants(self.constants)
@@ -157,7 +165,7 @@ class AerodynamicsComp(NodesComp, RootComponent):
             add_point_inputs(self, ["incidence_deg"])
         add_performance(self, tilted)
         if self.options["loads"]:
-            add_loads(self, fidelity, self.static.n_azimuths)
+            add_loads(self, fidelity, self.static)
         self.search, self.function = _steady, _at_root
         self.state, self.residual = "induced_velocity", "residual"
 

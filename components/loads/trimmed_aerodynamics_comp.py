@@ -57,7 +57,8 @@ class TrimmedAerodynamicsComp(AerodynamicsComp):
         between the bounds, or the solution does not converge; the message has the reason, the
         thrust at both bounds and, with `num_nodes`, the node.
     ValueError
-        If `rpm_bounds` are not positive and rising.
+        If `rpm_bounds` are not positive and rising, or `blade_element` and `tilted` are asked for
+        together.
     """
 
     def initialize(self) -> None:

@@ -9,6 +9,7 @@ from typing import Any, TypedDict
 import numpy.typing as npt
 
 from propmdao.propeller.changes import Change
+from propmdao.propeller.description import Propeller
 from propmdao.records.air import Air, Turbulence
 from propmdao.records.fidelity import Fidelity, GustShape, Marching, Start, WakeMotion
 from propmdao.records.listening import Listening, Surroundings
@@ -111,6 +112,11 @@ class Request:
                 f"turbulence_intensity {intensity:g} m/s is about broadband noise: ask for"
                 " broadband noise, too"
             )
+
+    def completed(self, propeller: Propeller) -> Request:
+        """Fill in what the model leaves to the propeller."""
+        model = self.model.completed(propeller.transition, propeller.tip, propeller.trip)
+        return dataclasses.replace(self, model=model)
 
     def to_dict(self) -> dict[str, Any]:
         """Return it as plain numbers, the part of ``propmdao analyze --json`` that was asked."""

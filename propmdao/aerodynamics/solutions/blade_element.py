@@ -42,7 +42,8 @@ from propmdao.records.loads import PointLoads
 from propmdao.records.pytrees import Scalar, record
 from propmdao.runtime.compilation import compiled
 
-_TOLERANCE = 1.0e-6  # relative, in the inflow angle, before the last step
+# Relative, in the inflow angle, before the last step: derivatives are taken there.
+_TOLERANCE = 1.0e-10
 # The swirl of an annulus that no air passes would be infinite: |sin phi| is kept above this,
 # smoothly. At an inflow angle of 3 deg it changes the momentum by 0.02 %.
 _LEAST_SINE = 1.0e-3
@@ -111,18 +112,22 @@ def inflow_angles(flow: BladeElements) -> Array:
     fixed = jax.lax.stop_gradient((flow, laws))
 
     def missing(phi: Array, _: tuple[()]) -> tuple[Array, tuple[()]]:
-        return -_momentum(*fixed, phi) / slope, ()
+        return -_momentum(fixed[0], _element(*fixed, phi), phi) / slope, ()
 
-    guess, slope = _guess(*fixed)
-    downwash = _momentum(*fixed, jnp.zeros_like(guess)) < 0.0
+    zero = jnp.zeros_like(fixed[0].strips.radius)
+    still = _element(*fixed, zero)
+    guess, slope = _guess(fixed[0], still)
+    downwash = _momentum(fixed[0], still, zero) < 0.0
     right = jnp.full_like(guess, 0.5 * jnp.pi)
     low, high = jnp.where(downwash, 0.0, -right), jnp.where(downwash, right, 0.0)
     phi, _ = decreasing_root(missing, low, high, Guess(guess, ()), _TOLERANCE, straight=True)
     # One Newton step squares the error left, and in it alone the arguments count: it gives the
     # derivatives.
     phi = jax.lax.stop_gradient(phi)
-    by_angle = jax.jvp(lambda at: _momentum(*fixed, at), (phi,), (jnp.ones_like(phi),))[1]
-    return phi - _momentum(flow, laws, phi) / by_angle
+    by_angle = jax.jvp(
+        lambda at: _momentum(fixed[0], _element(*fixed, at), at), (phi,), (jnp.ones_like(phi),)
+    )[1]
+    return phi - _momentum(flow, _element(flow, laws, phi), phi) / by_angle
 
 
 @compiled
@@ -258,24 +263,23 @@ def _loss(flow: BladeElements, phi: Array) -> Array:
     return (2.0 / jnp.pi) ** 2 * jnp.arccos(jnp.exp(-tip)) * jnp.arccos(jnp.exp(-hub))
 
 
-def _momentum(flow: BladeElements, laws: SectionLaws | None, phi: Array) -> Array:
+def _momentum(flow: BladeElements, element: _Element, phi: Array) -> Array:
     """g(phi) over the speed Omega r, (ns,)."""
-    element, solidity, loss = _element(flow, laws, phi), _solidity(flow), _loss(flow, phi)
+    solidity, loss = _solidity(flow), _loss(flow, phi)
     advance = flow.case.state.speed / (flow.case.state.rotation_speed * flow.strips.radius)
     momentum = 4.0 * loss * _sine(phi)
     axial = momentum * jnp.sin(phi) - solidity * element.c_n
     return axial - advance * (momentum * jnp.cos(phi) + solidity * element.c_t)
 
 
-def _guess(flow: BladeElements, laws: SectionLaws | None) -> tuple[Array, Array]:
+def _guess(flow: BladeElements, still: _Element) -> tuple[Array, Array]:
     """Inflow angle for small angles and a lift of 2 pi per radian, and the slope of g there.
 
     g is 4 phi (phi - V / Omega r) - 2 pi sigma (theta - phi) then, with theta the blade angle from
-    zero lift.
+    zero lift, which elements at an inflow angle of 0 meet.
     """
     lift = 2.0 * jnp.pi * _solidity(flow)
     advance = flow.case.state.speed / (flow.case.state.rotation_speed * flow.strips.radius)
-    still = _element(flow, laws, jnp.zeros_like(lift))
     theta = still.alpha - flow.strips.zero_lift_angle
     b = lift - 4.0 * advance
     root = jnp.sqrt(b * b + 16.0 * lift * jnp.abs(theta))
@@ -299,7 +303,7 @@ def _forces(flow: BladeElements, phi: Array) -> tuple[Array, SectionStates]:
         lift_coefficient=element.cl,
         drag_coefficient=element.cd,
         borrowed_lift=jnp.zeros_like(speed),
-        residual=_momentum(flow, laws, phi) / solidity,
+        residual=_momentum(flow, element, phi) / solidity,
     )
     return force, states
 
