@@ -122,8 +122,8 @@ def _compare(options: argparse.Namespace) -> None:
     asked = asked_of(options) | air_of(options)
     Request.of({"listening": listening}, **asked)
     from propmdao.analysis.single_point import analyze
-    from propmdao.commands import report
     from propmdao.commands.designs.compared_analyses import ComparedAnalyses
+    from propmdao.figures.contents.doubts import TONES_ONLY
     from propmdao.formats.propellers import load_propeller
 
     with warning_lines("compare"):
@@ -144,7 +144,7 @@ def _compare(options: argparse.Namespace) -> None:
     if compared.observer is None:
         print_line("No observers: --arc RADIUS ELEVATION... adds their noise.")
     elif results[0]["model"]["noise"]["broadband"] is None:
-        print_line(report.TONES_ONLY)
+        print_line(TONES_ONLY)
     files = _write(options, propellers, compared)
     if files:
         print_line(" ".join(["Files:", *files]))

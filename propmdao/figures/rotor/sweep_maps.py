@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from propmdao.figures.style import GRID, LINE_STYLES, MARKERS, RUN_COLORS, Floats, headline, page
+from propmdao.figures.contents.palette import LINE_STYLES, MARKERS, RUN_COLORS, Floats
+from propmdao.figures.style import GRID, headline, page
 from propmdao.records.quantities import VARIABLES
 
 if TYPE_CHECKING:

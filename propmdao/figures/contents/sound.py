@@ -11,7 +11,7 @@ from propmdao.acoustics.levels.bands import HALF_BAND, tones_in_bands
 from propmdao.acoustics.levels.decibels import level_db, mean_square
 from propmdao.acoustics.levels.weighting import a_weighting
 from propmdao.acoustics.signals import Tones
-from propmdao.figures.style import SOURCE_COLORS, Floats
+from propmdao.figures.contents.palette import SOURCE_COLORS, Floats
 
 
 class Sound(NamedTuple):
