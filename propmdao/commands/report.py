@@ -152,8 +152,8 @@ def print_files(result: dict[str, Any]) -> None:
     Parameters
     ----------
     result : dict
-        With "sound", of `formats.wav.Recording`, "tables", "figures" and "vtk", names of files; or
-        without.
+        With "sound", of `formats.wav.Recording`, "tables", "figures", "report" and "vtk", names of
+        files; or without.
     """
     if "sound" in result:
         sound = result["sound"]
@@ -165,6 +165,8 @@ def print_files(result: dict[str, Any]) -> None:
         print_line(" ".join(["Tables:", *result["tables"]]))
     if "figures" in result:
         print_line(" ".join(["Figures:", *result["figures"]]))
+    if "report" in result:
+        print_line(f"Report: {result['report']}")
     if "vtk" in result:
         print_line(" ".join(["For ParaView:", *result["vtk"]]))
 

@@ -8,14 +8,19 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from propmdao.acoustics.kinematics.observers import directions, on_map
-from propmdao.acoustics.levels.decibels import level_db, oaspl_db
+from propmdao.acoustics.levels.decibels import oaspl_db
 from propmdao.aerodynamics.solutions.marching.marched_loads import MarchedLoads
 from propmdao.aerodynamics.solutions.result import TiltedLoads
-from propmdao.analysis.results import MECHANISMS, Analysis
+from propmdao.analysis.results import Analysis
 from propmdao.analysis.self_noise import BANDS_HZ
 from propmdao.figures.contents.palette import LEVEL, LEVEL_DBA, Floats
 from propmdao.figures.contents.pressures import blade_passage
-from propmdao.figures.contents.sound import Sound, band_levels, source_levels
+from propmdao.figures.contents.sound import (
+    Sound,
+    analysis_sound,
+    mechanism_levels,
+    source_levels,
+)
 from propmdao.figures.contents.subjects import observer_groups, operation
 from propmdao.figures.directivity import directivity, hemisphere_map
 from propmdao.figures.flow.disks import disk_of_loads
@@ -91,49 +96,6 @@ def analysis_figures(
             numbers[name] += 1
             figures[name if numbers[name] == 1 else f"{name}_{numbers[name]}"] = figure
     return figures
-
-
-def analysis_sound(analysis: Analysis) -> Sound:
-    """Sound of an analysis at all of its observers.
-
-    Parameters
-    ----------
-    analysis : Analysis
-        Analysis with or without broadband noise.
-
-    Returns
-    -------
-    Sound
-        Tones, and broadband noise where there is any.
-    """
-    if analysis.broadband is None:
-        return Sound.of_tones(analysis.tones)
-    return Sound(analysis.tones, BANDS_HZ, np.asarray(analysis.broadband.total))
-
-
-def mechanism_levels(analysis: Analysis, observer: int = 0) -> dict[str, Floats]:
-    """Third octaves of an analysis by mechanism of the broadband noise.
-
-    Parameters
-    ----------
-    analysis : Analysis
-        Analysis with broadband noise.
-    observer : int
-        Index of the observer.
-
-    Returns
-    -------
-    dict of str to (n_bands,) array
-        Levels in the bands `propmdao.analysis.self_noise.BANDS_HZ` [dB]: "total", with the tones,
-        "broadband", and each mechanism by its name.
-    """
-    noise = analysis.broadband
-    assert noise is not None
-    sound = analysis_sound(analysis)
-    powers = {"broadband": sound.broadband[observer]}
-    powers |= {name.replace("_", " "): getattr(noise, name)[observer] for name in MECHANISMS}
-    levels = {name: np.asarray(level_db(power)) for name, power in powers.items()}
-    return {"total": band_levels(sound, observer)} | levels
 
 
 def _at_observer(analysis: Analysis, sound: Sound, observer: int) -> dict[str, Figure]:

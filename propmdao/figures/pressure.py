@@ -7,20 +7,16 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from propmdao.acoustics.levels.decibels import REFERENCE_PRESSURE
 from propmdao.figures.contents.palette import (
-    LOWEST_LEVEL,
     SOURCE_COLORS,
     line_colors,
     line_styles,
 )
-from propmdao.figures.contents.pressures import PressureRecord
+from propmdao.figures.contents.pressures import LOWEST_PRESSURE, PressureRecord
 from propmdao.figures.style import literal, rows_of_axes, say_silent
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
-
-_LOWEST_PRESSURE = REFERENCE_PRESSURE * 10 ** (LOWEST_LEVEL / 20)
 
 
 def pressure(records: Mapping[str, PressureRecord]) -> Figure:
@@ -42,7 +38,7 @@ def pressure(records: Mapping[str, PressureRecord]) -> Figure:
     for axes, (name, record) in zip(rows, records.items(), strict=True):
         colors, styles = line_colors(record.parts), line_styles(record.parts)
         for i, (part, values) in enumerate(record.parts.items()):
-            if np.sqrt(np.mean(np.square(values))) < _LOWEST_PRESSURE:
+            if np.sqrt(np.mean(np.square(values))) < LOWEST_PRESSURE:
                 continue
             width = 2.0 if part in SOURCE_COLORS else 1.0 + i
             axes.plot(

@@ -8,12 +8,14 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from propmdao.acoustics.levels.decibels import pressure_history
+from propmdao.acoustics.levels.decibels import REFERENCE_PRESSURE, pressure_history
 from propmdao.acoustics.signals import Tones
-from propmdao.figures.contents.palette import Floats
+from propmdao.figures.contents.palette import LOWEST_LEVEL, Floats
 from propmdao.figures.contents.sound import amplitudes
 
 _TIMES = 256  # in a blade passage
+#: Root of the mean square below which nothing is drawn [Pa].
+LOWEST_PRESSURE = REFERENCE_PRESSURE * 10 ** (LOWEST_LEVEL / 20)
 
 
 class PressureRecord(NamedTuple):

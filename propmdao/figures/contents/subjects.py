@@ -24,11 +24,27 @@ def operation(analysis: Analysis) -> str:
     str
         In words.
     """
+    return f"{analysis.propeller.name}, {condition(analysis)}"
+
+
+def condition(analysis: Analysis) -> str:
+    """Rotation speed and flight for titles.
+
+    Parameters
+    ----------
+    analysis : Analysis
+        The analysis.
+
+    Returns
+    -------
+    str
+        In words.
+    """
     speed, incidence = float(analysis.point.speed), analysis.point.incidence_deg
     flight = f"{speed:.4g} m/s" if speed else "hover"
     if incidence:
         flight += f" at an incidence of {incidence:.4g}°"
-    return f"{analysis.propeller.name}, {analysis.rpm:.0f} rpm, {flight}"
+    return f"{analysis.rpm:.0f} rpm, {flight}"
 
 
 def observer_groups(listening: Listening) -> Iterator[tuple[str, slice]]:

@@ -37,7 +37,7 @@
   const table = (plot) => {
     const { data, layout } = figures[number(plot)];
     const made = document.createElement("table");
-    made.createCaption().textContent = plot.previousElementSibling?.textContent ?? "";
+    made.createCaption().textContent = plot.closest(".panel").querySelector(".label").textContent;
     const head = made.createTHead().insertRow(), body = made.createTBody();
     const named = layout.meta?.columns ?? ["", ""];
     ["", ...named].forEach((text) => cell(head, "th", text));
@@ -50,6 +50,47 @@
     }
     return made;
   };
+
+  // Names of the lines, as buttons that hide and show them.
+  const legend = (plot) => {
+    const named = figures[number(plot)].data.filter((trace) => trace.name && !trace.meta?.hidden);
+    if (named.length < 2 || plot.classList.contains("space")) return;
+    const list = document.createElement("ul");
+    list.className = "legend";
+    for (const trace of named) {
+      const button = list.appendChild(document.createElement("li"))
+        .appendChild(document.createElement("button"));
+      button.type = "button";
+      button.setAttribute("aria-pressed", "true");
+      button.append(sample(trace), plain(trace.name));
+      button.addEventListener("click", () => {
+        const shown = button.getAttribute("aria-pressed") !== "true";
+        button.setAttribute("aria-pressed", String(shown));
+        const same = plot.data.flatMap((other, i) =>
+          other.name === trace.name || other.legendgroup === trace.name ? [i] : []);
+        Plotly.restyle(plot, { visible: shown }, same);
+      });
+    }
+    plot.before(list);
+  };
+  const sample = (trace) => {
+    const make = (name, given, parent) => {
+      const made = parent.appendChild(document.createElementNS("http://www.w3.org/2000/svg", name));
+      for (const [key, value] of Object.entries(given)) made.setAttribute(key, value);
+      return made;
+    };
+    const drawing = make("svg", { width: 34, height: 12, "aria-hidden": "true" }, document.createElement("span"));
+    const dashes = { dash: "8 4", dot: "2.5 3.5", dashdot: "8 3 2.5 3" }[trace.line.dash] ?? "none";
+    if (trace.mode !== "markers") {
+      make("line", { x1: 1, x2: 33, y1: 6, y2: 6, stroke: trace.line.color,
+        "stroke-width": trace.line.width, "stroke-dasharray": dashes }, drawing);
+    }
+    const signs = { circle: "M17 2a4 4 0 1 0 .01 0z", square: "M13 2h8v8h-8z", diamond: "M17 1l5 5-5 5-5-5z",
+      "triangle-up": "M17 1l5 9h-10z", "triangle-down": "M17 11l5-9h-10z" };
+    if (trace.marker) make("path", { d: signs[trace.marker.symbol] ?? signs.circle, fill: trace.line.color }, drawing);
+    return drawing;
+  };
+  plots.forEach(legend);
 
   const details = (figure) => {
     const box = figure.querySelector("details");
@@ -87,18 +128,30 @@
     modeBarButtonsToRemove: ["select2d", "lasso2d", "autoScale2d", "zoomIn2d", "zoomOut2d", "sendDataToCloud"],
   };
   const eyes = {
-    "all around": { eye: { x: 0.75, y: -1.1, z: 0.9 }, up: { x: 0, y: 0, z: 1 } },
-    "from ahead": { eye: { x: 0, y: 0, z: 1.6 }, up: { x: 0, y: 1, z: 0 } },
-    "from the side": { eye: { x: 0, y: -1.6, z: 0 }, up: { x: 0, y: 0, z: 1 } },
-    "from the tip": { eye: { x: 1.6, y: 0, z: 0 }, up: { x: 0, y: 0, z: 1 } },
+    "all around": { eye: { x: 0.6, y: -1.1, z: 0.9 }, up: { x: 0, y: 0, z: 1 } },
+    "from ahead": { eye: { x: 0, y: 0, z: 1.5 }, up: { x: 0, y: 1, z: 0 } },
+    "from the side": { eye: { x: 0, y: -1.5, z: 0 }, up: { x: 0, y: 0, z: 1 } },
+    "from the tip": { eye: { x: 1.5, y: 0, z: 0 }, up: { x: 0, y: 0, z: 1 } },
+  };
+  // A body as large as its place allows; without perspective its size is that of the axes.
+  const fill = (plot, ratio) => {
+    const size = Math.max(1, plot.clientWidth / plot.clientHeight);
+    for (const axis of "xyz") ratio[axis] *= Math.min(size, 2);
   };
   const draw = async () => {
     for (const plot of plots.filter((plot) => visible(plot) && !plot.dataset.drawn)) {
       plot.dataset.drawn = "true";
       const { data, layout } = figures[number(plot)];
       // A finger that moves over a diagram moves the page.
-      const dragged = touch && !layout.scene ? { ...layout, dragmode: false } : layout;
-      await Plotly.newPlot(plot, data, dragged, config);
+      if (touch && !layout.scene) layout.dragmode = false;
+      if (layout.scene) fill(plot, layout.scene.aspectratio);
+      await Plotly.newPlot(plot, data, layout, config);
+      // On paper a diagram is scaled to its place.
+      const scalable = () => plot.querySelectorAll("svg.main-svg").forEach((svg) => {
+        svg.setAttribute("viewBox", `0 0 ${svg.getAttribute("width")} ${svg.getAttribute("height")}`);
+      });
+      plot.on("plotly_afterplot", scalable);
+      scalable();
       await new Promise((resolve) => setTimeout(resolve));
     }
     for (const plot of plots.filter((plot) => visible(plot) && plot.dataset.drawn)) {
@@ -110,14 +163,9 @@
     const plot = row.parentElement.querySelector(".plot");
     row.addEventListener("click", (event) => {
       const eye = eyes[event.target.dataset.view];
-      if (eye) Plotly.relayout(plot, { "scene.camera": eye });
+      if (eye) Plotly.relayout(plot, { "scene.camera.eye": eye.eye, "scene.camera.up": eye.up });
     });
   }
   await draw();
-  // On paper the diagrams are as wide as the page; the size on the screen comes back after it.
-  const fit = () => plots.filter(visible).forEach((plot) => {
-    Plotly.relayout(plot, { width: plot.clientWidth, height: plot.clientHeight });
-  });
-  matchMedia("print").addEventListener("change", fit);
   document.documentElement.dataset.drawn = "true";
 })();
