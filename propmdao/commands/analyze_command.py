@@ -22,6 +22,7 @@ from propmdao.commands.options import (
     asked_of,
     number,
 )
+from propmdao.commands.output import report_file
 from propmdao.commands.output.json_output import print_json
 from propmdao.commands.output.output_files import (
     require_matplotlib,
@@ -30,7 +31,6 @@ from propmdao.commands.output.output_files import (
     save_figures,
 )
 from propmdao.commands.output.progress import progress_line
-from propmdao.commands.output.report_file import add_report, origin_of, require_report
 from propmdao.commands.output.warning_lines import warning_lines
 from propmdao.formats.endings import POLAR_READERS, described
 from propmdao.records.quantities import ASKED
@@ -177,7 +177,7 @@ def add_analyze(commands: argparse._SubParsersAction[Any]) -> None:
         action="store_true",
         help="directivity and map of a hemisphere A-weighted",
     )
-    add_report(
+    report_file.add_report(
         group, "numbers, players for the sounds, figures to turn and zoom, inputs and versions"
     )
     group.add_argument(
@@ -240,11 +240,10 @@ def _analyze(options: argparse.Namespace) -> None:
     results[0] |= _write(options, analyses[0], polars)
     if options.report is not None:
         from propmdao.figures.pages.analysis_page import analysis_page
-        from propmdao.figures.pages.rendering import write_page
 
-        origin = origin_of(options, warned)
-        write_page(options.report, analysis_page(analyses[0], results[0], origin, options.seconds))
-        results[0]["report"] = str(options.report)
+        origin = report_file.origin_of(options, warned)
+        page = analysis_page(analyses[0], results[0], origin, options.seconds)
+        results[0]["report"] = report_file.write_report(options, page)
     _write_tables(options, results)
     if options.figures is not None:
         from propmdao.commands.output.results_folder import write_record
@@ -318,7 +317,7 @@ def _check_observers(options: argparse.Namespace, n_observers: int) -> None:
         require_sound(1, options.seconds)
     if options.figures is not None:
         require_matplotlib("--figures")
-    require_report(options)
+    report_file.require_report(options)
 
 
 def _write_tables(options: argparse.Namespace, results: list[dict[str, Any]]) -> None:

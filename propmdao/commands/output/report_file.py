@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 from propmdao.commands.output.output_files import require_output
 
 if TYPE_CHECKING:
-    from propmdao.figures.pages.parts import Origin
+    from propmdao.figures.pages.parts import Origin, Page
 
 _LIBRARIES = ("jinja2", "plotly")
 
@@ -80,3 +80,29 @@ def origin_of(options: argparse.Namespace, warnings: Sequence[str] = ()) -> Orig
         versions(),
         tuple(warnings),
     )
+
+
+def write_report(options: argparse.Namespace, page: Page) -> str:
+    """Write a page.
+
+    Parameters
+    ----------
+    options : argparse.Namespace
+        What was typed, with the file.
+    page : Page
+        The page.
+
+    Returns
+    -------
+    str
+        The file.
+
+    Raises
+    ------
+    OutputError
+        If it cannot be written.
+    """
+    from propmdao.figures.pages.rendering import write_page  # needs Jinja and Plotly
+
+    write_page(options.report, page)
+    return str(options.report)

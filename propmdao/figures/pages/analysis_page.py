@@ -104,7 +104,7 @@ def blades_section(propellers: Mapping[str, Any]) -> Section:
         rotor_figures.in_space(propellers),
         rotor_figures.shapes(propellers),
     ]
-    parts += [tables.stations(propeller) for propeller in propellers.values()]
+    parts += [tables.stations(name, propeller) for name, propeller in propellers.items()]
     return Section("Blades", parts)
 
 

@@ -15,8 +15,9 @@ _DASHES = {"-": "solid", "--": "dash", "-.": "dashdot", ":": "dot"}
 _SYMBOLS = {"o": "circle", "s": "square", "D": "diamond", "^": "triangle-up", "v": "triangle-down",
             "<": "triangle-left", ">": "triangle-right"}  # fmt: skip
 _GRID = "#e2e2e2"
-#: Fills from dark blue to yellow, which colour-blind people and grey prints tell apart.
-FILLS = "Viridis"
+# Fills from light to dark, which colour-blind people and grey prints tell apart, and none so dark
+# that black levels on its lines could not be read.
+_FILLS = [[0.0, "#f7fcf0"], [0.33, "#ccebc5"], [0.67, "#7bccc4"], [1.0, "#3a97c9"]]
 
 
 def text(words: str) -> str:
@@ -180,8 +181,8 @@ def filled_map(
         "x": numbers(x),
         "y": numbers(y),
         "z": numbers(values),
-        "colorscale": FILLS,
-        "contours": {"showlabels": True, "labelfont": {"color": "white"}},
+        "colorscale": _FILLS,
+        "contours": {"showlabels": True, "labelfont": {"color": "black"}},
         "colorbar": {"thickness": 14, "title": {"text": text(unit), "side": "right"}},
         "connectgaps": False,
     }

@@ -94,12 +94,15 @@ class Player:
         Words on what is heard.
     flac : bytes
         The sound, as a file of FLAC.
+    repeats : bool
+        Whether it is made to be repeated without a click.
     """
 
     kind: ClassVar[str] = "player"
     label: str
     detail: str
     flac: bytes
+    repeats: bool = True
 
 
 @dataclasses.dataclass(frozen=True)

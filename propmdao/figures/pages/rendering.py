@@ -7,6 +7,7 @@ and of Plotly, so that a browser runs no other, and nothing is loaded from anywh
 from __future__ import annotations
 
 import base64
+import functools
 import gzip
 import hashlib
 from collections.abc import Sequence
@@ -69,21 +70,29 @@ def html(page: Page) -> str:
     own, style = (_own_file(name) for name in ("page.js", "page.css"))
     panels = _panels(page.sections)
     numbers = {id(panel): number for number, panel in enumerate(panels)}
-    # Line ends as browsers read them, of which the hash is taken.
-    plotly = get_plotlyjs().replace("\r\n", "\n").replace("\r", "\n")
+    packed, plotly_hash = _plotly()
     return environment.get_template("page.html").render(
         page=page,
         number_of=lambda panel: numbers[id(panel)],
         figures=[{"data": panel.data, "layout": panel.layout} for panel in panels],
         script=own,
         style=style,
-        plotly=base64.b64encode(gzip.compress(plotly.encode(), 9, mtime=0)).decode(),
-        hashes=[_hash(script) for script in (own, plotly)],
+        plotly=packed,
+        hashes=[_hash(own), plotly_hash],
     )
 
 
 def _own_file(name: str) -> str:
     return (files("propmdao.figures.pages") / "templates" / name).read_text(encoding="utf-8")
+
+
+@functools.cache
+def _plotly() -> tuple[str, str]:
+    """Plotly, packed, and its hash."""
+    # Line ends as browsers read them, of which the hash is taken.
+    script = get_plotlyjs().replace("\r\n", "\n").replace("\r", "\n")
+    packed = gzip.compress(script.encode(), 9, mtime=0)
+    return base64.b64encode(packed).decode(), _hash(script)
 
 
 def _hash(script: str) -> str:

@@ -78,7 +78,7 @@ def _space(name: str, propeller: Propeller) -> Panel:
     ]
     low, high = blades.min(axis=(0, 1, 2)), blades.max(axis=(0, 1, 2))
     # One scale along all axes; a cube of Plotly's has the size 1.
-    ratio = 1.8 * (high - low) / (high - low).max()
+    ratio = 1.6 * (high - low) / (high - low).max()
     plain = {"backgroundcolor": "white", "gridcolor": "#dddddd", "showspikes": False}
     axes: dict[str, Any] = {
         f"{name}axis": plain

@@ -119,30 +119,34 @@ def at_observers(analysis: Analysis, observers: Sequence[int]) -> Figure:
     )
 
 
-def beside(analyses: Mapping[str, Analysis], observer: int) -> Figure:
-    """Draw tones and third octaves of several propellers at an observer.
+def beside(analyses: Mapping[str, Analysis], observers: Sequence[int]) -> Figure:
+    """Draw tones and third octaves of several propellers at observers, to be chosen from.
 
     Parameters
     ----------
     analyses : mapping of str to Analysis
         Analyses by the name of the propeller, with the same observers.
-    observer : int
-        Index of the observer.
+    observers : sequence of int
+        Indices of the observers.
 
     Returns
     -------
     Figure
-        Tones, and third octaves of all noise.
+        Tones, and third octaves of all noise where there is broadband noise.
     """
     first = next(iter(analyses.values()))
-    drawn = [_tones(analyses, observer)]
-    if all(analysis.broadband is not None for analysis in analyses.values()):
-        levels = {name: mechanism_levels(a, observer)["total"] for name, a in analyses.items()}
-        drawn.append(_bands("third octaves of all noise", levels))
+    panels = {}
+    for observer in observers:
+        drawn = [_tones(analyses, observer)]
+        if first.broadband is not None:
+            levels = {name: mechanism_levels(a, observer)["total"] for name, a in analyses.items()}
+            drawn.append(_bands("third octaves of all noise", levels))
+        panels[place(first, observer)] = drawn
     return Figure(
-        f"Spectra at {place(first, observer)}",
+        "Spectra",
         f"Levels of the tones and third octaves of {' and '.join(analyses)}",
-        {"all": drawn},
+        panels,
+        choice="At",
     )
 
 

@@ -176,7 +176,8 @@ def inputs(result: Mapping[str, Any]) -> Table:
     Parameters
     ----------
     result : dict
-        With the keys of ``propmdao analyze --json``.
+        With keys of ``propmdao analyze --json``: point, change, model, listening, polars, those
+        that there are.
 
     Returns
     -------
@@ -185,7 +186,7 @@ def inputs(result: Mapping[str, Any]) -> Table:
     """
     by_key = {quantity.json: quantity for quantity in ASKED.values()}
     asked: list[list[str]] = []
-    parts = {name: result[name] for name in ("point", "change", "model")}
+    parts = {name: result[name] for name in ("point", "change", "model") if name in result}
     if "listening" in result:
         parts["around"] = result["listening"]["surroundings"]
     for part, content in parts.items():
@@ -195,7 +196,7 @@ def inputs(result: Mapping[str, Any]) -> Table:
             meaning = quantity.meaning if quantity else " ".join(path).replace("_", " ")
             unit = _unit(quantity.unit) if quantity else ""
             asked.append([meaning, _value(value), unit])
-    for airfoil, source in result["polars"].items():
+    for airfoil, source in result.get("polars", {}).items():
         asked.append([f"polars of {airfoil}", source, ""])
     return Table("Inputs", ["what", "value", "unit"], asked, n_words=3)
 
@@ -223,11 +224,13 @@ def _value(value: Any) -> str:
     return f"{value:.7g}" if isinstance(value, float) else str(value)
 
 
-def stations(propeller: Propeller) -> Table:
+def stations(name: str, propeller: Propeller) -> Table:
     """Tabulate the stations of a propeller.
 
     Parameters
     ----------
+    name : str
+        Name of the propeller.
     propeller : Propeller
         The propeller.
 
@@ -247,7 +250,7 @@ def stations(propeller: Propeller) -> Table:
         for station in zip(*(values for *_, values in known), strict=True)
     ]
     heads = [head for head, *_ in known]
-    return Table(f"Stations of {propeller.name}", heads, rows, n_words=0)
+    return Table(f"Stations of {name}", heads, rows, n_words=0)
 
 
 def described(propeller: Mapping[str, Any]) -> Table:

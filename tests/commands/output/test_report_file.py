@@ -27,6 +27,24 @@ def test_without_its_libraries_one_line_says_what_to_install(
     assert recorder.asked == [] and not file.exists()
 
 
+@pytest.mark.parametrize(
+    "command",
+    [
+        f"analyze {PROPELLER} --rpm 4000",
+        f"compare {PROPELLER} apcsf_10x4.7 --rpm 4000",
+        f"sweep {PROPELLER} --rpm 3000:4000:500 --out sweep.csv",
+        f"flyover {PROPELLER} --rpm 4000 --speed 8 --height 20",
+        f"optimise {PROPELLER} --thrust 2 --arc 2 -45 --results quiet",
+    ],
+)
+def test_a_file_that_is_no_page_is_refused_before_the_work(
+    recorder: Any, refused: Callable[..., str], command: str
+) -> None:
+    line = refused(*command.split(), "--report", "a.pdf")
+    assert "--report a.pdf: the file must end in .html" in line
+    assert recorder.asked == []
+
+
 def test_the_page_tells_the_command_and_the_warnings(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
