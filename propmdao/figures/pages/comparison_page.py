@@ -143,13 +143,13 @@ def compared_sections(
     list of Section
         Numbers, noise where somebody listens, loads of rotors that turn.
     """
-    at = f" at {where}" if where else ""
-    sections = [Section(f"Numbers{at}", [tables.beside(results, observer)])]
+    place = f" at {where}" if where else ""
+    sections = [Section(f"Numbers{place}", [tables.beside(results, observer)])]
     turning = {name: analysis for name, analysis in analyses.items() if analysis.rpm > 0.0}
     if observer is not None and len(turning) == len(analyses):
-        sections.append(_heard(analyses, observer, seconds, f"Noise{at}"))
+        sections.append(_heard(analyses, observer, seconds, f"Noise{place}"))
     if turning:
-        sections.append(Section(f"Loads{at}", [rotor_figures.span_loads(turning)]))
+        sections.append(Section(f"Loads{place}", [rotor_figures.span_loads(turning)]))
     return sections
 
 

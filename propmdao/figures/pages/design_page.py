@@ -96,12 +96,12 @@ def search_section(
     Section
         The history of the search.
     """
-    found, missed = np.asarray(objective, float), np.asarray(violation, float)
-    number = np.arange(1, found.size + 1)
+    reached, missed = np.asarray(objective, float), np.asarray(violation, float)
+    number = np.arange(1, reached.size + 1)
     met = missed <= tolerance
-    best = np.minimum.accumulate(np.where(met & ~np.isnan(found), found, np.inf))
+    best = np.minimum.accumulate(np.where(met & ~np.isnan(reached), reached, np.inf))
     best = np.where(np.isfinite(best), best, np.nan)
-    dots = line(number, found, "every design", color=RUN_COLORS[0], marker="o")
+    dots = line(number, reached, "every design", color=RUN_COLORS[0], marker="o")
     dots |= {"mode": "markers"}
     dots["marker"] |= {"color": RUN_COLORS[0]}
     designs = ("designs evaluated", "")
@@ -122,7 +122,7 @@ def search_section(
             y={"type": "log"},
         ),
     ]
-    failed = int(np.sum(np.isnan(found)))
+    failed = int(np.sum(np.isnan(reached)))
     lacking = f", {failed} of them failed" if failed else ""
     return Section(
         "Search",
@@ -134,5 +134,5 @@ def search_section(
                 note=f"Violations below {_LEAST_VIOLATION:g} are drawn there.",
             )
         ],
-        [f"{found.size} designs were evaluated{lacking}."],
+        [f"{reached.size} designs were evaluated{lacking}."],
     )

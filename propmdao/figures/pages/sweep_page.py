@@ -59,9 +59,9 @@ def sweep_page(
     described = {name: getattr(propeller, name) for name in ("name", "diameter", "n_blades")}
     described |= {"checksum": checksum(propeller), "source": propeller.source}
     over = [_figure(rows, columns)]
-    heard = _noise(rows, columns)
-    if heard is not None:
-        over.append(heard)
+    noise = _noise(rows, columns)
+    if noise is not None:
+        over.append(noise)
     return Page(
         title=f"Sweep of {propeller.name}",
         subtitle=f"over {' and '.join(column_label(column) for column in columns)}",
