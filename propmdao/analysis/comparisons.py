@@ -72,7 +72,7 @@ OPERATION: tuple[Row, ...] = (
     ("CP", "CP", ".5f"),
 )
 #: Levels at an observer: label, key.
-_LEVELS = (
+LEVEL_ROWS = (
     ("tone at blade passage, dB", "spl_bpf_db"),
     ("thickness noise, dB", "oaspl_thickness_db"),
     ("loading noise, dB", "oaspl_loading_db"),
@@ -125,13 +125,13 @@ def operation_and_levels(
         mean = {
             key: float(energy_sum_db(np.array([each[key] for each in observers])))
             - 10.0 * math.log10(len(observers))
-            for _, key in _LEVELS
+            for _, key in LEVEL_ROWS
             if key in place
         }
         parts[f"mean over {len(observers)} observers"] = ("mean", mean)
     for title, (prefix, levels) in parts.items():
         rows.append((title, "", ""))
-        for label, key in _LEVELS:
+        for label, key in LEVEL_ROWS:
             if key in levels:
                 rows.append((f"  {label}", f"{prefix} {key}", ".2f"))
                 values[f"{prefix} {key}"] = levels[key]

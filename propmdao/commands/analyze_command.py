@@ -22,6 +22,7 @@ from propmdao.commands.options import (
     asked_of,
     number,
 )
+from propmdao.commands.output import report_file
 from propmdao.commands.output.drives import add_drive, add_drive_results, motor_of
 from propmdao.commands.output.json_output import print_json
 from propmdao.commands.output.output_files import (
@@ -67,6 +68,7 @@ examples:
   propmdao analyze apcsf_11x4.7 --rpm 4200 --arc 1.905 -45 --band
   propmdao analyze apcsf_11x4.7 --thrust 3 --motor axi_2204_54 --battery-wh 12
   propmdao analyze apcsf_11x4.7 --rpm 4200 --arc 1.905 -45 --broadband --wav hover.wav
+  propmdao analyze apcsf_11x4.7 --rpm 4200 --arc 1.905 -90:90:15 --broadband --report hover.html
   propmdao analyze apcsf_11x4.7 --rpm 4200 --ground 10 --grid 0:40:5 0 -10 --absorption
   propmdao analyze apcsf_11x4.7 --rpm 4200 --speed 8 --level --hemisphere 20 10 --figures results
   propmdao analyze apcsf_11x4.7 --rpm 4200 --n-crit 9
@@ -178,6 +180,9 @@ def add_analyze(commands: argparse._SubParsersAction[Any]) -> None:
         action="store_true",
         help="directivity and map of a hemisphere A-weighted",
     )
+    report_file.add_report(
+        group, "numbers, players for the sounds, figures to turn and zoom, inputs and versions"
+    )
     group.add_argument(
         "--vtk",
         type=Path,
@@ -218,7 +223,7 @@ def _analyze(options: argparse.Namespace) -> None:
                 f"--polar {airfoil}: {propeller.name} has no such airfoil; it has"
                 f" {', '.join(dict.fromkeys(names))}"
             )
-    with warning_lines("analyze"):
+    with warning_lines("analyze") as warned:
         drag = options.measured_drag
         polars = polars_for(propeller, own, transition, drag) if options.viscous else None
         shown: dict[str, Any] = {"progress": progress_line()} if options.unsteady else {}
@@ -238,6 +243,12 @@ def _analyze(options: argparse.Namespace) -> None:
             if result["converged"]:
                 result["band"] = band(analysis, polars=polars if own else None).to_dict()
     results[0] |= _write(options, analyses[0], polars)
+    if options.report is not None:
+        from propmdao.figures.pages.analysis_page import analysis_page
+
+        origin = report_file.origin_of(options, warned)
+        page = analysis_page(analyses[0], results[0], origin, options.seconds)
+        results[0]["report"] = report_file.write_report(options, page)
     _write_tables(options, results)
     if options.figures is not None:
         from propmdao.commands.output.results_folder import write_record
@@ -268,6 +279,7 @@ def _check(options: argparse.Namespace) -> None:
     for option, value in (
         ("--wav", options.wav),
         ("--figures", options.figures),
+        ("--report", options.report),
         ("--vtk", options.vtk),
     ):
         if value is not None and _is_list(options.rpm):
@@ -304,8 +316,13 @@ def _check_observers(options: argparse.Namespace, n_observers: int) -> None:
         from propmdao.analysis.sounds import require_sound
 
         require_sound(n_observers, options.seconds, options.full_scale)
+    if options.report is not None and n_observers:
+        from propmdao.analysis.sounds import require_sound
+
+        require_sound(1, options.seconds)
     if options.figures is not None:
         require_matplotlib("--figures")
+    report_file.require_report(options)
 
 
 def _write_tables(options: argparse.Namespace, results: list[dict[str, Any]]) -> None:

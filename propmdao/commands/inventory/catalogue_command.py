@@ -122,8 +122,8 @@ def _described(propeller: Propeller) -> dict[str, Any]:
 
 
 def _draw(folder: Path, propeller: Propeller) -> list[str]:
-    from propmdao.figures.blades import blade_comparison
     from propmdao.figures.rotor.blade_view import blade_view
+    from propmdao.figures.rotor.blades import blade_comparison
 
     radii = [max(r, float(propeller.r_over_R[0])) for r in (0.3, 0.75, 0.95)]
     title = f"{propeller.name}, {propeller.n_blades} blades, {propeller.diameter:.4g} m"
