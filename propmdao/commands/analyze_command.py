@@ -63,15 +63,12 @@ examples:
   propmdao analyze apcsf_11x4.7 --rpm 6000 --speed 10 --incidence 70 --arc 1.905 -60 --json
   propmdao analyze apcsf_11x4.7 --rpm 6000 --speed 10 --incidence 70 --figures results --vtk results
   propmdao analyze apcsf_11x4.7 --rpm 6000 --speed 10 --incidence 70 --unsteady --wake free
-  propmdao analyze apcsf_11x4.7 --thrust 1.5 --speed 8 --arc 1.905 -45 --broadband
+  propmdao analyze apcsf_11x4.7 --thrust 1.5 --speed 8 --arc 1.905 -45 --broadband --wav cruise.wav
   propmdao analyze my_blade.toml --rpm 3000:5000:500 --arc 1.905 -45 0 45 --json
-  propmdao analyze apcsf_11x4.7 --rpm 4200 --arc 1.905 -45 --band
   propmdao analyze apcsf_11x4.7 --thrust 3 --motor axi_2204_54 --battery-wh 12
-  propmdao analyze apcsf_11x4.7 --rpm 4200 --arc 1.905 -45 --broadband --wav hover.wav
   propmdao analyze apcsf_11x4.7 --rpm 4200 --arc 1.905 -90:90:15 --broadband --report hover.html
   propmdao analyze apcsf_11x4.7 --rpm 4200 --ground 10 --grid 0:40:5 0 -10 --absorption
   propmdao analyze apcsf_11x4.7 --rpm 4200 --speed 8 --level --hemisphere 20 10 --figures results
-  propmdao analyze apcsf_11x4.7 --rpm 4200 --n-crit 9
   propmdao analyze apcsf_11x4.7 --rpm 4200 --trip-upper 0.05 --trip-lower 0.05
   propmdao analyze my_blade.toml --rpm 6000 --elastic --youngs-modulus 11e9 --material-density 1700
   propmdao analyze my_blade.toml --rpm 4200 --polar sg6042 sg6042_re50k.txt sg6042_re100k.txt
@@ -312,13 +309,11 @@ def _check_observers(options: argparse.Namespace, n_observers: int) -> None:
             f"--figure-at must be within 1 ... {n_observers}, the observers in the order of the"
             f" table; it is {options.figure_at}"
         )
-    if options.wav is not None:
-        from propmdao.analysis.sounds import require_sound
+    from propmdao.analysis.sounds import require_sound
 
+    if options.wav is not None:
         require_sound(n_observers, options.seconds, options.full_scale)
     if options.report is not None and n_observers:
-        from propmdao.analysis.sounds import require_sound
-
         require_sound(1, options.seconds)
     if options.figures is not None:
         require_matplotlib("--figures")

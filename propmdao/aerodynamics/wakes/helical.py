@@ -32,7 +32,7 @@ from propmdao.records.pytrees import Scalar, record, static
 from propmdao.records.states import RotorState
 from propmdao.records.wake_law import WakeGrid, WakeLaw
 
-_NEAR = np.radians(45.0)
+_NEAR_DEG = 45.0
 
 
 @record
@@ -70,7 +70,7 @@ def wake_transport(law: WakeLaw = WakeLaw(), grid: WakeGrid = WakeGrid()) -> Wak
         Law and ages, as the solutions take them.
     """
     ages = wake_azimuths(grid)
-    n_near = int(np.searchsorted(ages[1:-1], _NEAR))
+    n_near = int(np.searchsorted(ages[1:-1], np.radians(_NEAR_DEG)))
     return WakeTransport(law, ages, max(n_near, 1))
 
 
