@@ -69,6 +69,7 @@ def schema() -> dict[str, Any]:
     band |= {"broadband_range": _object(ranges, ranges)}
     files = {name: {"description": f"with --{option}"}
              for name, option in (("sound", "wav"), ("figures", "figures"), ("vtk", "vtk"),
+                                  ("report", "report"),
                                   ("tables", "out and --spectra"))}  # fmt: skip
     return {
         "$schema": "https://json-schema.org/draft/2020-12/schema",
