@@ -72,6 +72,7 @@ def schema() -> dict[str, Any]:
     band |= {"broadband_range": _object(ranges, ranges)}
     files = {name: {"description": f"with --{option}"}
              for name, option in (("sound", "wav"), ("figures", "figures"), ("vtk", "vtk"),
+                                  ("report", "report"),
                                   ("tables", "out and --spectra"))}  # fmt: skip
     kinds = {"endurance": {"type": ["number", "null"]}}
     motor = {name: _quantity(q, kinds.get(name, NUMBER))

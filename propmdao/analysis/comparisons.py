@@ -223,6 +223,26 @@ def _cells(
         yield label, form, cells
 
 
+def flat_values(values: Mapping[str, Any]) -> list[float]:
+    """Put the numbers of a band's results into one list.
+
+    Parameters
+    ----------
+    values : mapping of str to float or list of float
+        Results by name, as plain numbers.
+
+    Returns
+    -------
+    list of float
+        The numbers in their order, those of the observers one after the other.
+    """
+    return [
+        number
+        for value in values.values()
+        for number in (value if isinstance(value, list) else [value])
+    ]
+
+
 def side_by_side(rows: Sequence[Row], columns: Mapping[str, Mapping[str, Cell]]) -> Rows:
     """Format columns of results, for `markdown`.
 

@@ -41,6 +41,8 @@ def analysis_page(
     if analysis.rpm > 0.0:
         loads = [rotor_figures.span_loads({name: analysis}), *rotor_figures.over_turn(analysis)]
         sections.append(Section("Loads", loads))
+    if result.get("band"):
+        sections.append(Section("How far the numbers may be off", [tables.band(result)]))
     sections.append(blades_section({name: propeller}))
     sections.append(inputs_section({name: result}))
     return Page(

@@ -112,7 +112,7 @@ def first_numbers(results: Mapping[str, Mapping[str, Any]], observer: int | None
             heard_at = result["observers"][observer]
             key = "oaspl_total_dba" if "oaspl_total_dba" in heard_at else "oaspl_dba"
             what = "all noise" if key == "oaspl_total_dba" else "tones"
-            shown[f"{name}: {what}, observer {observer + 1}"] = f"{tables.level(heard_at[key])} dBA"
+            shown[f"{name}: {what}, observer {observer + 1}"] = tables.level_dba(heard_at[key])
     return shown
 
 

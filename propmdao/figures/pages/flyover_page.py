@@ -16,7 +16,7 @@ from propmdao.figures.pages import rotor_figures, tables
 from propmdao.figures.pages.analysis_page import blades_section, inputs_section
 from propmdao.figures.pages.diagrams import diagram, line, lines_of
 from propmdao.figures.pages.parts import Figure, Origin, Page, Player, Section, Table
-from propmdao.formats.wav import flac
+from propmdao.formats.wav import FULL_SCALE, flac
 
 _HEARD = 20.0  # s around the loudest moment: more would make a large page
 _RANGE = 60.0  # dB below the loudest that are drawn
@@ -118,7 +118,7 @@ def _player(pressure: Floats, flyover: Flyover) -> Player:
     middle = (loudest + 0.5) * STEP
     start = max(0, int((middle - 0.5 * _HEARD) * SAMPLE_RATE))
     heard_part = pressure[start : start + int(_HEARD * SAMPLE_RATE)]
-    full_scale = common_full_scale(heard_part)
+    full_scale = max(common_full_scale(heard_part), FULL_SCALE.lowest)
     begin = float(flyover.time[0]) - 0.5 * STEP + start / SAMPLE_RATE
     return Player(
         "The microphone",

@@ -69,7 +69,9 @@ def _space(name: str, propeller: Propeller) -> Panel:
             "surfacecolor": np.zeros(points.shape[:2], int).tolist(),
             "colorscale": [[0, color], [1, color]],
             "showscale": False,
-            "lighting": {"ambient": 0.45, "diffuse": 0.6, "specular": 0.15, "roughness": 0.7},
+            "lighting": {"ambient": 0.45, "diffuse": 0.6, "specular": 0.1, "roughness": 0.7},
+            # As the eye sees it, from above and behind the eye.
+            "lightposition": {"x": -2e3, "y": 1e4, "z": -5e3},
             "hovertemplate": "x %{x:.1f}, y %{y:.1f}, z %{z:.1f} mm<extra>blade "
             f"{number}</extra>",
         }

@@ -38,7 +38,7 @@ from propmdao.figures.pages.diagrams import (
     over_elevation,
 )
 from propmdao.figures.pages.parts import Figure, Panel, Player
-from propmdao.formats.wav import flac
+from propmdao.formats.wav import FULL_SCALE, flac
 
 _LOWEST_HZ, _HIGHEST_HZ = 50.0, 20e3  # of what is drawn of bands
 _RANGE = {"tones": 80.0, "bands": 60.0, "elevation": 40.0}  # dB below the loudest
@@ -341,7 +341,8 @@ def players(
     """
     observers = observers[: max(1, _MOST_SOUNDS // len(analyses))]
     records = {name: pressure_record(a, seconds, observers) for name, a in analyses.items()}
-    full_scale = common_full_scale(*records.values())
+    # Straight below a steady rotor there are no tones: silence has a scale, too.
+    full_scale = max(common_full_scale(*records.values()), FULL_SCALE.lowest)
     several = len(analyses) > 1
     return [
         Player(

@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
-from propmdao.analysis.comparisons import LEVEL_ROWS, operation_and_levels
+from propmdao.analysis.comparisons import LEVEL_ROWS, OPERATION, flat_values, operation_and_levels
 from propmdao.figures.pages.parts import Table
 from propmdao.propeller.description import Propeller
 from propmdao.records.quantities import ASKED
 
-_SILENCE = -199.0  # dB; silence is -200 dB
+_SILENCE, _SILENT = -199.0, "silent"  # dB; silence is -200 dB
 _PLACE = {"radius": "radius, m", "elevation_deg": "elevation, deg", "azimuth_deg": "azimuth, deg"}
 _STATIONS = {
     "r_over_R": ("r/R", ".3f"),
@@ -44,7 +44,7 @@ def first_numbers(result: Mapping[str, Any]) -> dict[str, str]:
     if observers:
         key = "oaspl_total_dba" if "oaspl_total_dba" in observers[0] else "oaspl_dba"
         name = "loudest observer" if key == "oaspl_total_dba" else "loudest observer, tones"
-        shown[name] = f"{level(max(place[key] for place in observers))} dBA"
+        shown[name] = level_dba(max(place[key] for place in observers))
     return shown
 
 
@@ -61,7 +61,23 @@ def level(value: float) -> str:
     str
         The level, or a word for silence, which is -200 dB.
     """
-    return f"{value:.1f}" if value > _SILENCE else "silent"
+    return f"{value:.1f}" if value > _SILENCE else _SILENT
+
+
+def level_dba(value: float) -> str:
+    """Text of an A-weighted level with its unit.
+
+    Parameters
+    ----------
+    value : float
+        Level [dBA].
+
+    Returns
+    -------
+    str
+        The level, or a word for silence.
+    """
+    return f"{level(value)} dBA" if value > _SILENCE else level(value)
 
 
 def levels(observers: Sequence[Mapping[str, Any]]) -> Table:
@@ -160,7 +176,7 @@ def beside(results: Mapping[str, Mapping[str, Any]], observer: int | None) -> Ta
 def _cell(value: Any, form: str) -> str:
     if not isinstance(value, float):
         return ""
-    return "silent" if value < _SILENCE else format(value, form)
+    return _SILENT if value < _SILENCE else format(value, form)
 
 
 def _change(first: Any, value: Any, form: str) -> str:
@@ -168,6 +184,52 @@ def _change(first: Any, value: Any, form: str) -> str:
     if not (isinstance(first, float) and isinstance(value, float)):
         return ""
     return "" if min(first, value) < _SILENCE else format(value - first, f"+z{form}")
+
+
+def band(result: Mapping[str, Any]) -> Table:
+    """Tabulate what inputs that are not known for sure do to the numbers.
+
+    Parameters
+    ----------
+    result : dict
+        With the keys of ``propmdao analyze --json``, among them the band.
+
+    Returns
+    -------
+    Table
+        A row for each number, a column for each input: the change with the input at its upper end
+        and at its lower end.
+    """
+    effects, whole = result["band"]["effects"], result["band"]
+    operation = {key: (label, form) for label, key, form in OPERATION}
+    labels, values = [], dict[str, Any]()
+    for key in whole["above"]:
+        if key == "spl_bpf_db":
+            values[key] = [place[key] for place in result["observers"]]
+            labels += [
+                (f"tone at blade passage, observer {k}, dB", ".2f")
+                for k, _ in enumerate(values[key], start=1)
+            ]
+        else:
+            labels.append(operation[key])
+            values[key] = result[key]
+    # With each input, and all together: changes at the upper and at the lower end.
+    ends = [(e["changes"][1], e["changes"][0]) for e in effects] + [
+        (whole["above"], whole["below"])
+    ]
+    columns = [tuple(None if end is None else flat_values(end) for end in pair) for pair in ends]
+    rows = [
+        [label, format(value, form)]
+        + [" / ".join("-" if e is None else f"{e[k]:+z{form}}" for e in pair) for pair in columns]
+        for k, ((label, form), value) in enumerate(zip(labels, flat_values(values), strict=True))
+    ]
+    heads = [
+        f"{e['name']} {e['ends'][0]:g} to {e['ends'][1]:g} {e['unit']}".rstrip() for e in effects
+    ]
+    caption = (
+        "Changes with an input at its upper / lower end; band: root of the sum of their squares"
+    )
+    return Table(caption, ["", "value", *heads, "band"], rows)
 
 
 def inputs(result: Mapping[str, Any]) -> Table:

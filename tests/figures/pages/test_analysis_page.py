@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import io
 
 import numpy as np
@@ -11,7 +12,10 @@ import soundfile
 pytest.importorskip("jinja2")
 pytest.importorskip("plotly")
 
+from propmdao.figures.pages import tables
+from propmdao.figures.pages.analysis_page import analysis_page
 from propmdao.figures.pages.parts import Figure, Player, Table
+from propmdao.figures.pages.rendering import html
 
 
 def parts(page, kind):
@@ -93,3 +97,33 @@ def test_inputs_have_meaning_and_unit(page):
     assert ["density of the air", "1.225", "kg/m³"] in inputs.rows
     assert ["lattice held to the polars of the sections", "yes", ""] in inputs.rows
     assert ["fidelity n spanwise", "10", ""] in inputs.rows
+
+
+def test_a_band_has_both_ends_of_every_input_and_what_is_left_out():
+    effect = {"name": "blade angle", "unit": "deg", "ends": [-1.0, 1.0], "left_out": None}
+    effect["changes"] = [{"thrust": -0.1, "spl_bpf_db": [-0.5, -0.6]}, None]
+    band = {"above": {"thrust": 0.0, "spl_bpf_db": [0.0, 0.0]}, "below": effect["changes"][0]}
+    observers = [{"spl_bpf_db": 40.0}, {"spl_bpf_db": 50.0}]
+    table = tables.band(
+        {"thrust": 2.0, "observers": observers, "band": band | {"effects": [effect]}}
+    )
+    assert table.head == ["", "value", "blade angle -1 to 1 deg", "band"]
+    assert table.rows == [
+        ["thrust, N", "2.0000", "- / -0.1000", "+0.0000 / -0.1000"],
+        ["tone at blade passage, observer 1, dB", "40.00", "- / -0.50", "+0.00 / -0.50"],
+        ["tone at blade passage, observer 2, dB", "50.00", "- / -0.60", "+0.00 / -0.60"],
+    ]
+
+
+def test_silence_is_a_page_too(hostile_analysis, origin):
+    tones = hostile_analysis.tones
+    quiet = dataclasses.replace(
+        hostile_analysis,
+        tones=type(tones)(tones.frequency_hz, {k: 1e-17 * p for k, p in tones.parts.items()}),
+        broadband=None,
+    )
+    page = analysis_page(quiet, quiet.to_dict(), origin, 0.5)
+    assert page.numbers["loudest observer, tones"] == "silent"
+    (stems, pressure) = figure(page, "Spectrum").panels["observer 2: elevation 0°, 1.905 m"]
+    assert not any(trace["y"] for trace in stems.data) and pressure.data == []
+    assert len(parts(page, Player)) == 3 and len(html(page)) > 1e6

@@ -44,6 +44,7 @@ def test_a_page_is_drawn_without_network_or_error(browser, text, tmp_path):
     shown = [plot for plot in re.findall(r'<div class="plot[^>]*>', body) if "data-drawn" in plot]
     assert len(shown) > 12
     assert body.count("gl-container") >= 1 and body.count('class="main-svg"') >= 2 * len(shown)
+    assert "Share chart" not in body  # nothing sends what is drawn anywhere
     assert 'id="trouble" class="doubts" role="alert" hidden' in body
     # The script in the blade's name has not run, and is there to be read.
     assert "window.hit=1&lt;/script&gt;" in body

@@ -43,6 +43,7 @@
     ["", ...named].forEach((text) => cell(head, "th", text));
     for (const trace of data) {
       for (const values of trace.meta?.hidden ? [] : points(trace)) {
+        if (values.includes(null)) continue;
         const row = body.insertRow();
         cell(row, "th", plain(trace.name));
         values.forEach((value) => cell(row, "td", value));
@@ -123,20 +124,21 @@
   }
 
   const touch = matchMedia("(pointer: coarse)").matches;
-  const config = {
+  const config = (layout) => ({
     displaylogo: false, responsive: true, scrollZoom: false, displayModeBar: touch ? false : "hover",
-    modeBarButtonsToRemove: ["select2d", "lasso2d", "autoScale2d", "zoomIn2d", "zoomOut2d", "sendDataToCloud"],
-  };
-  const eyes = {
-    "all around": { eye: { x: 0.6, y: -1.1, z: 0.9 }, up: { x: 0, y: 0, z: 1 } },
-    "from ahead": { eye: { x: 0, y: 0, z: 1.5 }, up: { x: 0, y: 1, z: 0 } },
-    "from the side": { eye: { x: 0, y: -1.5, z: 0 }, up: { x: 0, y: 0, z: 1 } },
-    "from the tip": { eye: { x: 1.5, y: 0, z: 0 }, up: { x: 0, y: 0, z: 1 } },
+    modeBarButtons: [["toImage", ...(layout.scene ? ["resetCameraDefault3d"] : layout.polar ? [] : ["resetScale2d"])]],
+  });
+  const views = {
+    "all around": { eye: { x: 0.6, y: -1.1, z: 0.9 }, up: { x: 0, y: 0, z: 1 }, across: "xyz" },
+    "from ahead": { eye: { x: 0, y: 0, z: 1.5 }, up: { x: 0, y: 1, z: 0 }, across: "xy" },
+    "from the side": { eye: { x: 0, y: -1.5, z: 0 }, up: { x: 0, y: 0, z: 1 }, across: "xz" },
+    "from the tip": { eye: { x: 1.5, y: 0, z: 0 }, up: { x: 0, y: 0, z: 1 }, across: "yz" },
   };
   // A body as large as its place allows; without perspective its size is that of the axes.
-  const fill = (plot, ratio) => {
-    const size = Math.max(1, plot.clientWidth / plot.clientHeight);
-    for (const axis of "xyz") ratio[axis] *= Math.min(size, 2);
+  const fill = (plot, scene) => {
+    const size = Math.min(Math.max(1, plot.clientWidth / plot.clientHeight), 2);
+    for (const axis of "xyz") scene.aspectratio[axis] *= size;
+    return { ...scene.aspectratio };
   };
   const draw = async () => {
     for (const plot of plots.filter((plot) => visible(plot) && !plot.dataset.drawn)) {
@@ -144,8 +146,8 @@
       const { data, layout } = figures[number(plot)];
       // A finger that moves over a diagram moves the page.
       if (touch && !layout.scene) layout.dragmode = false;
-      if (layout.scene) fill(plot, layout.scene.aspectratio);
-      await Plotly.newPlot(plot, data, layout, config);
+      if (layout.scene) figures[number(plot)].filled = fill(plot, layout.scene);
+      await Plotly.newPlot(plot, data, layout, config(layout));
       // On paper a diagram is scaled to its place.
       const scalable = () => plot.querySelectorAll("svg.main-svg").forEach((svg) => {
         svg.setAttribute("viewBox", `0 0 ${svg.getAttribute("width")} ${svg.getAttribute("height")}`);
@@ -162,8 +164,18 @@
     row.hidden = false;
     const plot = row.parentElement.querySelector(".plot");
     row.addEventListener("click", (event) => {
-      const eye = eyes[event.target.dataset.view];
-      if (eye) Plotly.relayout(plot, { "scene.camera.eye": eye.eye, "scene.camera.up": eye.up });
+      const view = views[event.target.dataset.view];
+      if (!view) return;
+      // What is across the line of sight is as large as the whole is from elsewhere.
+      const sizes = Object.entries(figures[number(plot)].filled);
+      const widest = (axes) => Math.max(...sizes.filter(([axis]) => axes.includes(axis)).map(([, size]) => size));
+      const larger = widest("xyz") / widest(view.across);
+      // An eye so far away that no part is behind it.
+      const eye = Object.fromEntries(Object.entries(view.eye).map(([axis, x]) => [axis, x * larger]));
+      Plotly.relayout(plot, {
+        "scene.camera.eye": eye, "scene.camera.up": view.up,
+        "scene.aspectratio": Object.fromEntries(sizes.map(([axis, size]) => [axis, size * larger])),
+      });
     });
   }
   await draw();
