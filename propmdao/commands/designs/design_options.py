@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from propmdao.records.states import OperatingPoint
 
 #: What may be asked of the model.
-ASKED_OPTIONS = ("n_crit", "trip_upper", "trip_lower", "stall_delay", "trip")
+ASKED_OPTIONS = ("n_crit", "trip_upper", "trip_lower", "stall_delay", "trip", "layers")
 _THICKNESS = "thickness"
 
 
