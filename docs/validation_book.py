@@ -3,7 +3,9 @@
 Run it from the repository: ``python docs/validation_book.py``. The tests in ``tests/validation``
 are run, and every statement that they hold is written down with the numbers found, so the page
 cannot say anything else than they do. What a test keeps by the fixture ``drawn`` becomes the figure
-of its case, in ``docs/figures/validation``. ``PROPMDAO_REFERENCE_DATA`` names the folder of
+of its case, in ``docs/figures/validation``. With words, as in ``python docs/validation_book.py
+wind_tunnel``, only the cases of these are run and their figures drawn; the page stays as it is.
+``PROPMDAO_REFERENCE_DATA`` names the folder of
 reference data; tests that need it are listed as left out where it is not set.
 """
 
@@ -172,7 +174,7 @@ def curves(checks: Mapping[str, Check]) -> dict[str, list[Mapping[str, Any]]]:
 
 
 def figure(panels: Mapping[str, Sequence[Mapping[str, Any]]]) -> Any:
-    """Figure of a case: computed lines and what they are compared with as dots, by panel.
+    """Figure of a case: computed lines or dots, what they are compared with as rings, by panel.
 
     Parameters
     ----------
@@ -200,8 +202,10 @@ def figure(panels: Mapping[str, Sequence[Mapping[str, Any]]]) -> Any:
         for kind in ("computed", "compared with"):
             for k, (label, (x, y)) in enumerate(_joined(comparisons, kind).items()):
                 form: dict[str, Any] = {"color": RUN_COLORS[-3 + k % 3], "label": label}
-                if kind == "computed":
+                if kind == "computed" and comparisons[0]["joined"]:
                     form |= {"linestyle": LINE_STYLES[1 - k % 4], "zorder": 2.1}
+                elif kind == "computed":
+                    form |= {"linestyle": "", "marker": ".", "zorder": 2.1}
                 else:
                     form |= {"linestyle": "", "marker": MARKERS[k % len(MARKERS)]}
                     form |= {"markersize": 5, "markerfacecolor": "none"}
@@ -273,13 +277,16 @@ def _code(text: str) -> str:
 
 
 def main() -> None:
-    """Run the tests and write the page."""
+    """Run the tests and write the page, or only the figures of the cases that are named."""
+    words = [word for word in sys.argv[1:] if word != "--run"]
     if "--run" in sys.argv:
         recorder = Recorder()
-        arguments = [TESTS, "-vv", "-p", "no:cacheprovider"]  # -vv: numbers in full
+        arguments = [f"{TESTS}/test_{word}.py" for word in words] or [TESTS]
+        arguments += ["-vv", "-p", "no:cacheprovider"]  # -vv: numbers in full
         arguments += ["-o", "enable_assertion_pass_hook=true"]
         pytest.main(arguments, plugins=[recorder])
-        PAGE.write_text(book(recorder.cases), encoding="utf-8")
+        if not words:
+            PAGE.write_text(book(recorder.cases), encoding="utf-8")
         FIGURES.mkdir(parents=True, exist_ok=True)
         for file, checks in recorder.cases.items():
             if panels := curves(checks):
@@ -288,7 +295,8 @@ def main() -> None:
     # Rewritten tests that are cached know of no such hook: this run has a cache of its own.
     with tempfile.TemporaryDirectory() as folder:
         environment = os.environ | {"PYTHONPYCACHEPREFIX": folder}
-        subprocess.run([sys.executable, __file__, "--run"], cwd=ROOT, env=environment, check=True)
+        command = [sys.executable, __file__, "--run", *words]
+        subprocess.run(command, cwd=ROOT, env=environment, check=True)
 
 
 if __name__ == "__main__":

@@ -114,7 +114,7 @@ def test_validation_book_says_what_its_tests_hold() -> None:
         "test_b": book.Check("test_b", [("1 < 2", "1 < 2")], "failed", "AssertionError: 3 < 2"),
         "test_c": book.Check("test_c", outcome="skipped", reason="no data"),
     }
-    kept = {"panel": "p", "labels": ("x, m", "y"), "log": False}
+    kept = {"panel": "p", "labels": ("x, m", "y"), "log": False, "joined": True}
     for x, y in ((2.0, 3.0), (1.0, 5.0)):  # the second test has the point in front
         checks["test_b"].drawn.append(
             kept | {"x": [x], "computed": {"ours": [y]}, "compared with": {"theirs": [y]}}
@@ -129,6 +129,10 @@ def test_validation_book_says_what_its_tests_hold() -> None:
     (axes,) = book.figure(book.curves(checks)).axes
     assert [line.get_xydata().tolist() for line in axes.get_lines()] == [[[1, 5], [2, 3]]] * 2
     assert (axes.get_title(), axes.get_xlabel(), axes.get_ylabel()) == ("p", "x, m", "y")
+    assert [line.get_linestyle() != "None" for line in axes.get_lines()] == [True, False]
+    dots = [comparison | {"joined": False} for comparison in checks["test_b"].drawn]
+    (axes,) = book.figure({"p": dots}).axes
+    assert [line.get_linestyle() for line in axes.get_lines()] == ["None"] * 2
 
 
 def test_index_of_an_accented_letter_is_beside_it() -> None:

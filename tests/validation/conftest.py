@@ -16,8 +16,9 @@ Curves = Mapping[str, npt.ArrayLike]
 def drawn(record_property: Callable[[str, Any], None]) -> Callable[..., None]:
     """Keep a comparison for the figure of its case in the validation book.
 
-    ``drawn(panel, (x label, y label), x, computed, compared_with, log=False)``; computed curves
-    become lines, those that they are compared with dots, by name. Tests that name the same panel
+    ``drawn(panel, (x label, y label), x, computed, compared_with, log=False, joined=True)``;
+    computed curves become lines, or dots where `joined` is False as neighbours have not all else in
+    common; those that they are compared with become rings, by name. Tests that name the same panel
     add their points to it.
     """
 
@@ -28,6 +29,7 @@ def drawn(record_property: Callable[[str, Any], None]) -> Callable[..., None]:
         computed: Curves,
         compared_with: Curves,
         log: bool = False,
+        joined: bool = True,
     ) -> None:
         curves = {
             kind: {name: np.atleast_1d(values).astype(float).tolist() for name, values in given}
@@ -36,8 +38,7 @@ def drawn(record_property: Callable[[str, Any], None]) -> Callable[..., None]:
             )
         }  # fmt: skip
         abscissa = np.atleast_1d(x).astype(float).tolist()
-        record_property(
-            "drawn", {"panel": panel, "labels": labels, "x": abscissa, "log": log, **curves}
-        )
+        form = {"panel": panel, "labels": labels, "log": log, "joined": joined}
+        record_property("drawn", {**form, "x": abscissa, **curves})
 
     return keep

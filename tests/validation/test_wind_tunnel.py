@@ -62,6 +62,7 @@ def compared(name, twist_deg=0.0, drawn=None):
                 f"{name}, {quantity}", ("advance ratio J", quantity), tunnel.dynamic.J,
                 {"propmdao, as published": getattr(points[1], quantity)},
                 {"wind tunnel, all rotation speeds": getattr(tunnel.dynamic, quantity)},
+                joined=False,
             )  # fmt: skip
     return errors(tunnel, *points)
 

@@ -67,9 +67,9 @@ def write_results(
     figures = {"history": _history_figure(history, options.minimise, designed.name)}
     files = [str(file), str(folder / "history.csv")]
     listening = listening_of(options)
-    asked = {name: getattr(options, name) for name in ASKED_OPTIONS if name != "trip"}
+    asked = {name: getattr(options, name) for name in ASKED_OPTIONS}
     if len(listening.observers):  # a blade that is quieter in tones may be louder in all
-        asked |= {"broadband": True, "trip": options.trip}
+        asked["broadband"] = True
     results: list[dict[str, Any]] = []
     compared_at: list[ComparedAnalyses] = []
     warned_of: list[str] = []

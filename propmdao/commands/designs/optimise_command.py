@@ -25,6 +25,7 @@ from propmdao.commands.output.progress import progress
 from propmdao.commands.output.report_file import add_report, require_report
 from propmdao.commands.output.results_folder import RECORD, write_record
 from propmdao.commands.output.warning_lines import warning_lines
+from propmdao.propeller.design_choices import RESPONSES
 from propmdao.runtime.output_files import make_folder
 
 if TYPE_CHECKING:
@@ -101,6 +102,7 @@ def _optimise(options: argparse.Namespace) -> None:
 
     n_control, n_heard = options.control_points, len(observers)
     require_words(points, free, options.minimise, limits, n_control, n_heard)
+    _require_broadband(options, (options.minimise, *limits))
     with warning_lines("optimise"):
         propeller = load_propeller(options.propeller)
     new_name = options.new_name or f"{propeller.name}_quiet"
@@ -133,6 +135,20 @@ def _optimise(options: argparse.Namespace) -> None:
         designed = designed_blade(prob, new_name)
         results = write_results(folder, options, (propeller, designed), points, history)
         write_record(folder, options, described | {"designed": designed}, search=inputs, **results)
+
+
+def _require_broadband(options: argparse.Namespace, words: tuple[str, ...]) -> None:
+    """Refuse a model of broadband noise where the search hears none."""
+    from propmdao.records.quantities import ASKED
+
+    broadband = [word for word, response in RESPONSES.items() if response.has_broadband]
+    for name in ("trip", "layers"):
+        value = getattr(options, name)
+        if value != ASKED[name].default and not set(words).intersection(broadband):
+            raise ValueError(
+                f"--{name} {value} is about broadband noise: minimise or limit"
+                f" {' or '.join(broadband)}"
+            )
 
 
 def _inputs(

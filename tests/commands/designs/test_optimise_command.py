@@ -95,6 +95,40 @@ def test_evolution_is_polished_and_resumes(
     assert (tmp_path / f"{PROPELLER}_quiet.toml").read_bytes() == designed
 
 
+def test_the_model_of_broadband_noise_is_asked_of_the_search_and_of_both_blades(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    pytest.importorskip("matplotlib")
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # OpenMDAO warns of itself
+        from propmdao.commands.designs import design_results, design_search
+        from propmdao.components.designs import problem_in_words
+        from propmdao.components.drivers.search_history import SearchHistory
+    asked: list[dict[str, Any]] = []
+
+    def analyze(*blade_and_point: Any, **options: Any) -> None:
+        asked.append(options)
+        raise ValueError("that is enough")
+
+    one = np.ones(1)
+    history = SearchHistory(objective=one, violation=0.0 * one, constraint=["none"])
+    monkeypatch.setattr(
+        problem_in_words, "design_problem", lambda *of, **words: asked.append(words)
+    )
+    monkeypatch.setattr(design_search, "run_search", lambda *of: history)
+    monkeypatch.setattr(
+        problem_in_words, "designed_blade", lambda prob, name: pm.load_propeller(PROPELLER)
+    )
+    monkeypatch.setattr(design_results, "analyze", analyze)
+    noise = ["--arc", "1.9", "-45", "--trip", "heavy", "--layers", "bpm"]
+    assert main(["optimise", PROPELLER, "--thrust", "2", *noise, "--results", str(tmp_path)]) == 2
+    assert "that is enough" in capsys.readouterr().err
+    search, analysis = asked
+    assert (search["trip"], search["layers"]) == ("heavy", "bpm")
+    assert (analysis["trip"], analysis["layers"], analysis["broadband"]) == ("heavy", "bpm", True)
+    assert json.loads((tmp_path / "record.json").read_text())["search"]["layers"] == "bpm"
+
+
 @pytest.mark.slow  # two processes compile the analysis
 def test_workers_find_what_one_process_finds(tmp_path: Path) -> None:
     from propmdao.commands.designs.design_search import run_search
@@ -123,6 +157,7 @@ def test_workers_find_what_one_process_finds(tmp_path: Path) -> None:
         ("--thrust 2", "--results"),
         ("--results r", "--thrust"),
         ("--thrust 2 --results r", "dba is heard by observers: there are none"),
+        ("--thrust 2 --results r --minimise power --layers bpm", "minimise or limit dba or db"),
         ("--thrust 2 --results r --minimise noise", "invalid choice: 'noise'"),
         ("--thrust 2 --results r --free chords", "there is no 'chords'; there are chord, twist"),
         ("--thrust 2 --results r --camber -0.01:0.01", "--camber is the range of a free camber"),
