@@ -150,8 +150,8 @@ design_lift_coefficient : (n_stations,) arrays
     viscous : bool
         Hold the lattice to the polars of the sections (default); False for inviscid flow.
     blade_element : bool
-        Blade elements in annuli in place of the lattice, in axial flight, by the trim "solve":
-        some sixty times as fast, and up to a fifth more thrust on wide blades. False by default.
+        Blade elements in annuli in place of the lattice, not by the trim "two_point": some sixty
+        times as fast, and up to a fifth more thrust on wide blades. False by default.
     stall_delay : bool
         True (default): rotation delays the stall of the sections.
     n_crit, trip_upper, trip_lower : float or None
@@ -182,9 +182,8 @@ design_lift_coefficient : (n_stations,) arrays
         If `observers` are no positions, `rpm_bounds` are not positive and rising, control points do
         not fit the blade, or `broadband` is asked for without observers, `trip` or
         `turbulent_inflow` without `broadband`, a transition in inviscid flow or beside `polars`,
-        `tilted` or `blade_element` with the trim "two_point", `blade_element` with `tilted` or
-        `unsteady`, `unsteady` with a thrust, a march without `unsteady`, or
-        one that cannot be.
+        `tilted` or `blade_element` with the trim "two_point", `blade_element` with `unsteady`,
+        `unsteady` with a thrust, a march without `unsteady`, or one that cannot be.
     om.AnalysisError
         If a component has no result; with `num_nodes` the message has the node.
     """

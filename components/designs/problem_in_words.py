@@ -101,9 +101,6 @@ def design_problem(
     limits = dict(limits or {})
     n_observers = 0 if observers is None else len(np.asarray(observers))
     ranges = require_words(points, free, minimise, limits, n_control, n_observers)
-    if options.get("blade_element"):
-        for point in points:
-            point.require_axial("a rotor by blade elements")
     responses = {word: RESPONSES[word] for word in (minimise, *limits) if word in RESPONSES}
     noisy = any(response.is_noise for response in responses.values())
     radii = np.linspace(propeller.r_over_R[0], 1.0, n_control)

@@ -16,6 +16,7 @@ from propmdao.aerodynamics.sections.polars.family import SectionPolars
 from propmdao.aerodynamics.sections.polars.table import PolarTable
 from propmdao.aerodynamics.solutions import axial, blade_element, periodic
 from propmdao.aerodynamics.solutions.case import RotorCase
+from propmdao.aerodynamics.solutions.period import tilted_elements
 from propmdao.aerodynamics.wakes.helical import WakeTransport, wake_transport
 from propmdao.components.bases.array_function import Arrays
 from propmdao.components.bases.nodes_comp import STATIC, NodesComp
@@ -51,7 +52,7 @@ class RotorKind(NamedTuple):
     def solver(self) -> Any:
         """Module that solves for the loads, a `propmdao.aerodynamics.trim.Solver`."""
         if self.blade_element:
-            return blade_element
+            return blade_element if self.n_azimuths is None else tilted_elements
         return axial if self.n_azimuths is None else periodic
 
 

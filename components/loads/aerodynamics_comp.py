@@ -109,8 +109,8 @@ class AerodynamicsComp(NodesComp, RootComponent):
         True (default): the loads along the blade, `circulation` and those below it, are outputs.
         Without them derivatives are cheap where many are asked for, as missions do.
     blade_element : bool
-        Blade elements in annuli instead of the lattice, in axial flight: much faster, less
-        accurate. `circulation` has one row then. False by default.
+        Blade elements in annuli instead of the lattice: much faster, less accurate. `circulation`
+        has one row then. False by default.
     n_blades : int
         Number of equally spaced blades.
     fidelity : Fidelity
@@ -129,8 +129,6 @@ class AerodynamicsComp(NodesComp, RootComponent):
         If an input or a result is not finite, rotation or flight backwards, the incidence beyond
         its range, diameter or a property of the air not positive, or the solution does not
         converge; the message has the reason and, with `num_nodes`, the node.
-    ValueError
-        If `blade_element` and `tilted` are asked for together.
 
     Warns
     -----
@@ -152,8 +150,6 @@ class AerodynamicsComp(NodesComp, RootComponent):
         n_blades = self.options["n_blades"]
         n_azimuths = azimuths_for(fidelity.n_azimuths, n_blades) if tilted else None
         self.static = RotorKind(n_blades, n_azimuths, self.options["blade_element"])
-        if self.static.blade_element and tilted:
-            raise ValueError("blade elements are of axial flight: tilted must be False")
         grid = fidelity.period_wake if tilted else fidelity.wake
         self.constants = add_rotor_inputs(self, grid)
         self.search_constants = self._search_constants(self.constants)
@@ -176,8 +172,12 @@ class AerodynamicsComp(NodesComp, RootComponent):
         """Constants of the search, from those of the function."""
         return constants
 
+    def _has_tilted_wake(self) -> bool:
+        """Whether there is a wake whose length depends on how fast the flight is."""
+        return self.static.n_azimuths is not None and not self.static.blade_element
+
     def found_at(self, inputs: Arrays) -> Mapping[str, Any]:
-        if not self.options["tilted"]:
+        if not self._has_tilted_wake():
             return super().found_at(inputs)
         slow = "rpm" in inputs and is_slow(_advance_ratio(inputs, inputs["rpm"]))
         solution = self._found_in_a_wake(inputs, slow)
@@ -193,7 +193,7 @@ class AerodynamicsComp(NodesComp, RootComponent):
     def found_at_all(
         self, points: Sequence[Arrays], batch_size: int
     ) -> Iterable[Mapping[str, Any]]:
-        if not self.options["tilted"]:
+        if not self._has_tilted_wake():
             return super().found_at_all(points, batch_size)
         return map(self.found_at, points)  # each in the wake of its own length
 

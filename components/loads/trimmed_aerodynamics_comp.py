@@ -57,8 +57,7 @@ class TrimmedAerodynamicsComp(AerodynamicsComp):
         between the bounds, or the solution does not converge; the message has the reason, the
         thrust at both bounds and, with `num_nodes`, the node.
     ValueError
-        If `rpm_bounds` are not positive and rising, or `blade_element` and `tilted` are asked for
-        together.
+        If `rpm_bounds` are not positive and rising.
     """
 
     def initialize(self) -> None:

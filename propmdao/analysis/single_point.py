@@ -30,6 +30,7 @@ from propmdao.aerodynamics.solutions.edgewise import (
     warn_if_fast,
 )
 from propmdao.aerodynamics.solutions.marching.marched_loads import Progress
+from propmdao.aerodynamics.solutions.period import tilted_elements
 from propmdao.aerodynamics.solutions.result import RotorLoads, TiltedLoads
 from propmdao.aerodynamics.trim import Solver, rotation_bounds, trim
 from propmdao.aerodynamics.wakes.helical import wake_transport
@@ -139,8 +140,6 @@ def require_analysable(propeller: Propeller, request: Request) -> None:
     if loads.elastic is not None:
         point.require_axial("an elastic blade")
         material_of(changed, loads.elastic)
-    if loads.blade_element:
-        point.require_axial("a rotor by blade elements")
 
 
 def analysis_of(
@@ -233,11 +232,13 @@ def _loads(case: RotorCase, request: Request, progress: Progress | None) -> tupl
     point, model = request.point, request.model
     if model.loads.unsteady is not None:
         return marched(case, point, model, progress)
-    if model.loads.blade_element:
-        return _solve(blade_element, case, point)
     if point.incidence_deg == 0.0:
-        return _solve(axial, case, point)
-    return _tilted(case, point, model)
+        return _solve(blade_element if model.loads.blade_element else axial, case, point)
+    if not model.loads.blade_element:
+        return _tilted(case, point, model)
+    tilted, state = _solve(tilted_elements, case, point)
+    warn_if_fast(edgewise_advance_ratio(state, float(case.rotor.radius)), stacklevel=4)
+    return tilted, state
 
 
 def _solve(solver: Solver, case: RotorCase, point: OperatingPoint) -> tuple[Any, RotorState]:

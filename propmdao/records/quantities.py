@@ -110,7 +110,7 @@ _ASKED = (
         "blade_element", "", "blade elements in annuli in place of the lattice", LOADS, False,
         per_node=False, option="--blade-element",
         help="loads by blade elements in annuli of momentum, with losses at tip and root, in place"
-        " of the lattice: much faster, and up to a fifth more thrust on wide blades; axial flight",
+        " of the lattice: much faster, and up to a fifth more thrust on wide blades",
     ),
     Quantity(
         "stall_delay", "", "stall of the sections delayed by rotation", LOADS, True,

@@ -95,10 +95,35 @@ def test_nodes_and_rest(group):
     assert_allclose([rpm[2], torque[2]], np.ravel([alone["rpm"], alone["torque"]]), rtol=1e-12)
 
 
+@pytest.mark.slow
+def test_at_an_incidence(group, propeller, around):
+    """The tilted group has the analysis' numbers, and derivatives of its own kind."""
+    prob = group(tilted=True, fidelity=around, observers=OBSERVERS)
+    for name, value in {"speed": 8.0, "incidence": 70.0, "thrust_required": 1.5}.items():
+        prob.set_val(name, value)
+    prob.run_model()
+    expected = pm.analyze(
+        propeller, thrust=1.5, speed=8.0, incidence_deg=70.0, blade_element=True,
+        observers=OBSERVERS, fidelity=around,
+    )  # fmt: skip
+    assert_allclose(prob.get_val("torque"), float(expected.loads.torque), rtol=1e-7)
+    assert_allclose(prob.get_val("spl_bpf_db"), expected.spl_bpf_db(), atol=1e-6)
+    totals = prob.compute_totals(of=["torque", "hub_moment"], wrt=["incidence", "speed"])
+    for name, step in (("incidence", 1e-3), ("speed", 1e-3)):
+        start, ends = prob.get_val(name).copy(), []
+        for sign in (1.0, -1.0):
+            prob.set_val(name, start + sign * step)
+            prob.run_model()
+            ends.append([prob.get_val("torque")[0], *prob.get_val("hub_moment")])
+        prob.set_val(name, start)
+        slope = (np.array(ends[0]) - ends[1]) / (2.0 * step)
+        exact = np.concatenate([totals[of, name].ravel() for of in ("torque", "hub_moment")])
+        assert_allclose(exact, slope, rtol=1e-5, atol=1e-9)
+
+
 @pytest.mark.parametrize(
     ("options", "words"),
     [
-        ({"tilted": True}, "blade elements are of axial flight: tilted must be False"),
         ({"unsteady": True, "trim": "rpm"}, "blade elements have no wake to march"),
         ({"trim_method": "two_point"}, 'trim_method "two_point" is of the lattice: blade_element'),
     ],
@@ -109,13 +134,10 @@ def test_what_blade_elements_cannot_do_is_refused(group, options, words):
 
 
 def test_a_design_problem_by_blade_elements(propeller, small):
-    """One word makes the problem one of the lower rung; an incidence is refused."""
+    """One word makes the problem one of the lower rung."""
     point = pm.OperatingPoint(thrust=2.0, speed=4.0)
     words = {"free": ("twist",), "minimise": "power", "n_control": 5, "fidelity": small}
     prob = design_problem(propeller, point, **words, blade_element=True)
     prob.run_model()
     loads = pm.analyze(propeller, point, blade_element=True, fidelity=small).loads
     assert_allclose(prob.get_val("torque"), float(loads.torque), rtol=1e-6)
-    tilted = pm.OperatingPoint(thrust=2.0, speed=4.0, incidence_deg=30.0)
-    with pytest.raises(ValueError, match="incidence_deg must be 0 for a rotor by blade elements"):
-        design_problem(propeller, tilted, **words, blade_element=True)

@@ -16,6 +16,7 @@ from jax import Array
 
 from propmdao.aerodynamics.solutions import axial, blade_element, periodic
 from propmdao.aerodynamics.solutions.case import RotorCase
+from propmdao.aerodynamics.solutions.period import tilted_elements
 from propmdao.aerodynamics.solutions.result import RotorLoads, TiltedLoads, unless_still
 from propmdao.records.pytrees import Scalar
 
@@ -33,8 +34,8 @@ def solved_at(
     Parameters
     ----------
     solver : module
-        `solutions.axial`, `solutions.periodic` or `solutions.blade_element`, whose elements find
-        their inflow without it.
+        `solutions.axial`, `solutions.periodic`, or `solutions.blade_element` and
+        `solutions.period.tilted_elements`, whose elements find their inflow without it.
     induced_velocity : float
         Induced velocity at the disk, that of the solver's `solve` [m/s].
     case : RotorCase
@@ -45,8 +46,8 @@ def solved_at(
     loads, residual : RotorLoads or TiltedLoads, float
         Loads, and the induced velocity of their thrust less the given one, 0 at the root [m/s].
     """
-    if solver is blade_element:
-        elements = blade_element.solve(case)
+    if solver in (blade_element, tilted_elements):
+        elements = solver.solve(case)
         return elements, elements.induced_velocity - induced_velocity
     rotation_speed = case.state.rotation_speed
     turning = jnp.asarray(rotation_speed > 0.0)
@@ -65,7 +66,7 @@ def trimmed_at(
     Parameters
     ----------
     solver : module
-        `solutions.axial`, `solutions.periodic` or `solutions.blade_element`.
+        One of these.
     rotation_speed : float
         Rotation speed, that of `trim.solve_for_thrust` [rad/s].
     case : RotorCase
