@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import dataclasses
+import reprlib
 from collections.abc import Mapping
 from typing import Any, TypedDict
 
+import numpy as np
 import numpy.typing as npt
 
 from propmdao.propeller.changes import Change
@@ -175,6 +177,8 @@ class Request:
             record = place.split(".")[0]
             if record in given_records:
                 raise ValueError(f"{name} is given, and {record}, which holds it: give one of them")
+            if isinstance(getattr(ASKED.get(name), "default", None), bool):
+                _require_switch(name, value)
             places.setdefault(place, {})[name] = value
         made: dict[str, Any] = {
             "point": lambda: OperatingPoint(
@@ -187,6 +191,12 @@ class Request:
             "listening": lambda: Listening(**places.get("listening", {})),
         }
         return cls(**{name: given_records.get(name) or make() for name, make in made.items()})
+
+
+def _require_switch(name: str, value: Any) -> None:
+    """Refuse what is neither True nor False, lest words or records count as True."""
+    if not isinstance(value, bool | np.bool_):
+        raise ValueError(f"{name} must be True or False; it is {reprlib.repr(value)}")
 
 
 #: Record that holds each value, as a dotted path.
