@@ -58,7 +58,8 @@ from propmdao.runtime.compilation import compiled
 
 __all__ = ["evaluate", "flow_at", "solution", "solve"]
 
-_TOLERANCE = 1.0e-11  # of the equations, which are of the order of the inflow ratio squared
+# Of the equations, which are of the order of the inflow ratio squared; derivatives are taken there.
+_TOLERANCE = 1.0e-13
 _MAX_STEPS = 40
 _FRACTIONS = 0.5 ** np.arange(8)  # of a Newton step that are tried: polars bend sharply near stall
 _SWEEPS = 8  # of the uniform induced velocity with which the search begins
