@@ -4,7 +4,8 @@
   evolution.
 - *Quiet tones* and *quiet total*: the 29 variables of `free_form_blade.py`. One minimises the
   tones and the other the A-weighted total with broadband noise, and each holds what the other
-  minimises at the baseline's, with thrust, torque, thickness of the sections and slopes.
+  minimises at the baseline's, with thrust, torque, thickness of the sections and slopes. Each blade
+  is heard by other models of broadband noise, too: tripped, and by the fits of NASA RP-1218.
 - ``--evolution N``: two levels, N designs of differential evolution and SLSQP from the best, on
   the thesis' problem: whether another valley than SLSQP's holds something better.
 
@@ -45,6 +46,7 @@ from propmdao.figures.directivity import directivity
 from propmdao.figures.rotor.blades import blade_comparison
 from propmdao.figures.spectra import third_octaves
 from propmdao.figures.style import save
+from propmdao.records.models import Layers, Trip
 
 COARSE = pm.Fidelity(n_chordwise=4, n_spanwise=12, n_contour=21, n_surface_span=20, n_harmonics=4)
 TOLERANCE = 1e-4  # of a constraint in driver scaling
@@ -56,7 +58,11 @@ ROWS: tuple[Row, ...] = (
     ("  thickness noise, dB", "thickness", ".2f"),
     ("  loading noise, dB", "loading", ".2f"),
     ("total, soft maximum, dBA", "total", ".2f"),
-    ("  without laminar shedding", "tripped", ".2f"),
+    ("  without laminar shedding", "unshed", ".2f"),
+    ("  suction side, dBA", "suction_side", ".2f"),
+    ("  separation, dBA", "separation", ".2f"),
+    ("  total if heavily tripped", "tripped", ".2f"),
+    ("  total by the fits of RP-1218", "fits", ".2f"),
     ("tones at -45 deg, dB", "tones_at", ".2f"),
     ("  thickness at -45 deg, dB", "thickness_at", ".2f"),
     ("  loading at -45 deg, dB", "loading_at", ".2f"),
@@ -74,25 +80,37 @@ BY_STEP = ("rpm", "torque", "tones", "thickness", "loading", "total", "tripped")
 Design = dict[str, np.ndarray]  # control points by distribution
 
 
-def evaluate(propeller: pm.Propeller) -> pm.Analysis:
+def evaluate(
+    propeller: pm.Propeller, trip: Trip = "none", layers: Layers = "sections"
+) -> pm.Analysis:
     """Analyse a propeller at the thrust, in the row of microphones and over the arc."""
     elevations = [*free_form.MICROPHONES, *thesis.DIRECTIVITY]
     return pm.analyze(
         propeller, thrust=thesis.THRUST, speed=thesis.SPEED, density=thesis.DENSITY,
         observers=pm.arc(thesis.DISTANCE, elevations), broadband=True,
-        fidelity=thesis.FIDELITY,
+        fidelity=thesis.FIDELITY, trip=trip, layers=layers,
     )  # fmt: skip
+
+
+def total_dba(analysis: pm.Analysis) -> float:
+    """Soft maximum of the A-weighted total over the row of microphones."""
+    observers = analysis.to_dict()["observers"][: len(free_form.MICROPHONES)]
+    levels = [observer["oaspl_total_dba"] for observer in observers]
+    return soft_maximum_db(levels, free_form.EXPONENT)
 
 
 def column(propeller: pm.Propeller, analysis: pm.Analysis) -> dict[str, Cell]:
     """Compute what the table shows of a blade."""
-    observers, n = analysis.to_dict()["observers"], len(free_form.MICROPHONES)
+    n = len(free_form.MICROPHONES)
     microphone, p = n + thesis.MICROPHONE_INDEX, free_form.EXPONENT
     loads, air, noise = analysis.loads, analysis.state.air, analysis.broadband
     total, parts = analysis.tones.total, analysis.tones.parts
     assert noise is not None
-    # As if the boundary layers were tripped; the tones are far below.
-    turbulent = level_dba(BANDS_HZ, noise.total[:n] - noise.laminar_shedding[:n])
+    mechanisms = {
+        "unshed": noise.total - noise.laminar_shedding,  # the tones are far below
+        "suction_side": noise.suction_side,
+        "separation": noise.separation,
+    }
     r, thrust = np.asarray(loads.strips.r_over_R), np.asarray(loads.strip_thrust)
     reynolds = loads.sections.relative_speed * loads.strips.chord / air.kinematic_viscosity
     radius = 0.5 * propeller.diameter
@@ -103,8 +121,14 @@ def column(propeller: pm.Propeller, analysis: pm.Analysis) -> dict[str, Cell]:
         "tones": soft_maximum_db(oaspl_db(total[:n]), p),
         "thickness": soft_maximum_db(oaspl_db(parts["thickness"][:n]), p),
         "loading": soft_maximum_db(oaspl_db(parts["loading"][:n]), p),
-        "total": soft_maximum_db([levels["oaspl_total_dba"] for levels in observers[:n]], p),
-        "tripped": soft_maximum_db(turbulent, p),
+        "total": total_dba(analysis),
+        **{
+            name: soft_maximum_db(level_dba(BANDS_HZ, power[:n]), p)
+            for name, power in mechanisms.items()
+        },
+        # Other models of the same noise: what is quiet in its own alone is no quiet blade.
+        "tripped": total_dba(evaluate(propeller, trip="heavy")),
+        "fits": total_dba(evaluate(propeller, layers="bpm")),
         "tones_at": float(oaspl_db(total[microphone])),
         "thickness_at": float(oaspl_db(parts["thickness"][microphone])),
         "loading_at": float(oaspl_db(parts["loading"][microphone])),
