@@ -1,4 +1,4 @@
-"""Time of a rotor's self-noise: 24 strips, 24 azimuths, 30 bands, one and nine observers."""
+"""Time of a rotor's self-noise: 24 strips, 24 azimuths, 30 bands; and of all sound on a sphere."""
 
 from __future__ import annotations
 
@@ -7,17 +7,18 @@ import jax.numpy as jnp
 import numpy as np
 import pytest
 
+import propmdao as pm
 from propmdao.acoustics.broadband.rotor import StripFlow, rotor_self_noise
 from propmdao.acoustics.broadband.section import Section
 from propmdao.acoustics.broadband.self_noise import third_octave_centers
-from propmdao.acoustics.kinematics.observers import arc
+from propmdao.acoustics.kinematics.observers import arc, sphere
 from propmdao.records.air import Air
 from propmdao.records.states import RotorState
 
 BANDS = third_octave_centers(100, 80e3)
 
 
-@pytest.fixture(scope="module", params=[1, 9], ids="observers-{}".format)
+@pytest.fixture(scope="module", params=[1, 9, 400], ids="observers-{}".format)
 def case(request):
     """Return (strips, observers): what the noise is differentiated by in a design."""
     r = np.linspace(0.02, 0.138, 24)
@@ -57,3 +58,17 @@ def test_rotor_self_noise(benchmark, case):
 
 def test_reverse_derivative(benchmark, case):
     timed(benchmark, jax.grad(lambda *values: jnp.sum(jnp.log(hear(*values)))), *case)
+
+
+def test_sphere_of_400_observers(processor_time, record_property):
+    """Loads, tones and broadband noise on 20 elevations and 20 azimuths: 1 s is wanted."""
+    places = sphere(2.0, np.linspace(-85.0, 85.0, 20), np.arange(20) * 18.0)
+    propeller = pm.load_propeller("apcsf_11x4.7")
+
+    def analysis():
+        found = pm.analyze(propeller, rpm=4200.0, broadband=True, observers=places)
+        return found.tones.total, found.broadband.total
+
+    seconds = processor_time(analysis)
+    record_property("processor_s", seconds)
+    print(f"sphere of 400 observers: {seconds:.2f} s of the processor")

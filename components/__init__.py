@@ -12,6 +12,7 @@ from propmdao.components.loads.aerodynamics_comp import AerodynamicsComp
 from propmdao.components.loads.marched_aerodynamics_comp import MarchedAerodynamicsComp
 from propmdao.components.loads.rotation_speed_comp import RotationSpeedComp
 from propmdao.components.loads.trimmed_aerodynamics_comp import TrimmedAerodynamicsComp
+from propmdao.components.motor_comp import MotorComp
 from propmdao.components.noise_objective_comp import NoiseObjectiveComp
 from propmdao.components.propeller_group import PropellerGroup
 
@@ -23,6 +24,7 @@ __all__ = [
     "Generation",
     "GeometryComp",
     "MarchedAerodynamicsComp",
+    "MotorComp",
     "NoiseObjectiveComp",
     "PropellerGroup",
     "RotationSpeedComp",

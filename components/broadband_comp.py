@@ -14,7 +14,13 @@ from propmdao.acoustics.levels.weighting import level_dba
 from propmdao.aerodynamics.lattice.rings import vortex_rings
 from propmdao.aerodynamics.lattice.strips import blade_strips
 from propmdao.aerodynamics.sections.edge_layers.tables import EdgeLayerTable, blade_layers
-from propmdao.analysis.self_noise import BANDS_HZ, self_noise, strip_flow, with_layers
+from propmdao.analysis.self_noise import (
+    BANDS_HZ,
+    self_noise,
+    strip_flow,
+    with_fitted_layers,
+    with_layers,
+)
 from propmdao.components.bases.array_function import Arrays
 from propmdao.components.bases.nodes_comp import STATIC, NodesComp
 from propmdao.components.inputs.model_options import declare_model
@@ -110,11 +116,13 @@ class BroadbandComp(NodesComp):
         Numbers of panels.
     turbulent_inflow : bool
         Whether turbulence may flow in, which adds the noise of Amiet's model.
-    trip : {"none", "light", "heavy"}
-        Tripping of the boundary layers; "none" is the default.
+    trip : {"none", "light", "heavy"}, tuple of these, or None
+        Tripping of the boundary layers that the fits have, everywhere or at the propeller's
+        stations; None (default): as the propeller's description says.
     layers : SectionLayers or None
-        Boundary layers of the propeller's sections, as `layers_for` finds them; None (default) for
-        the fits of NASA RP-1218 to a NACA 0012.
+        Boundary layers of the propeller's sections, as `layers_for` finds them or, tripped,
+        `propmdao.analysis.self_noise.section_layers`; None (default) for the fits of NASA RP-1218
+        to a NACA 0012.
 
     Raises
     ------
@@ -123,7 +131,7 @@ class BroadbandComp(NodesComp):
         its range, a property of the air not positive, the blade tip not slower than sound, or an
         observer not outside the rotor; with `num_nodes` the message has the node.
     ValueError
-        If `observers` are no positions.
+        If `observers` are no positions, or `trip` is asked of `layers` that are what they are.
     """
 
     def initialize(self) -> None:
@@ -163,11 +171,17 @@ class BroadbandComp(NodesComp):
         self.add_output("band_frequency", val=np.asarray(BANDS_HZ), units="Hz")
         for quantity in BROADBAND_LEVELS.values():
             self.add_point_output(quantity.variable, shape=(n_observers,), desc=quantity.meaning)
-        stations = propeller.r_over_R
+        stations, trip = propeller.r_over_R, self.options["trip"]
+        if layers is not None and trip is not None:
+            raise ValueError(
+                f"trip {trip!r} is about the fits of NASA RP-1218: layers have trips of their own"
+            )
+        noise = SelfNoiseModel(trip, layers="bpm" if layers is None else "sections")
+        described = propeller.transition.completed()
         self.function = _broadband
         self.static = (
             int(propeller.n_blades),
-            SelfNoiseModel(trip=self.options["trip"], tip=propeller.tip or "rounded"),
+            noise.completed(described, propeller.tip, propeller.trip),
         )
         self.constants = blade, strip_interpolation(stations, ns), layers
         axes: tuple[Axis, ...] = ("observer", [f"{frequency:g} Hz" for frequency in BANDS_HZ])
@@ -194,7 +208,9 @@ def _broadband(inputs: Arrays, constants: Any, static: tuple[int, SelfNoiseModel
     if layers is not None:
         table = EdgeLayerTable(layers.alpha, layers.log_re, inputs["section_layers"])
         angle = inputs["section_angle_of_attack"]
-        flow = with_layers(flow, table, angle, state.air, model.trip)
+        flow = with_layers(flow, table, angle, state.air)
+    else:
+        flow = with_fitted_layers(flow, model, section_radii, state.air)
     turbulence = None
     if TURBULENCE_INPUTS[0] in inputs:
         turbulence = Turbulence(*(inputs[name][0] for name in TURBULENCE_INPUTS))

@@ -23,12 +23,15 @@ from propmdao.records.quantities import (
     BROADBAND_LEVELS,
     HUB_LOADS,
     LEVELS,
+    MOTOR,
+    MOTOR_RESULTS,
     RESULTS,
 )
 from propmdao.records.units import Quantity
 
 FILE = Path(__file__).parent / "reference" / "analysis.schema.json"
 NUMBER, TEXT, YES_OR_NO = ({"type": name} for name in ("number", "string", "boolean"))
+_OF_BATTERY = ("battery_energy", "usable_share", "endurance")
 VECTOR = {"type": "array", "items": NUMBER, "minItems": 3, "maxItems": 3}
 
 
@@ -69,11 +72,17 @@ def schema() -> dict[str, Any]:
     band |= {"broadband_range": _object(ranges, ranges)}
     files = {name: {"description": f"with --{option}"}
              for name, option in (("sound", "wav"), ("figures", "figures"), ("vtk", "vtk"),
+                                  ("report", "report"),
                                   ("tables", "out and --spectra"))}  # fmt: skip
+    kinds = {"endurance": {"type": ["number", "null"]}}
+    motor = {name: _quantity(q, kinds.get(name, NUMBER))
+             for name, q in (MOTOR | MOTOR_RESULTS).items()}  # fmt: skip
+    always = {"motor": TEXT} | {n: s for n, s in motor.items() if n not in _OF_BATTERY}
+    drive = {"drive": _object({"motor": TEXT} | motor, always)}
     return {
         "$schema": "https://json-schema.org/draft/2020-12/schema",
         "title": "propmdao analyze --json, one operating point",
-        **_object(properties | tilted | marched | band | files, properties),
+        **_object(properties | tilted | marched | band | files | drive, properties),
     }
 
 

@@ -9,6 +9,8 @@ from propmdao.records.quantities import (
     BROADBAND_LEVELS,
     HUB_LOADS,
     LEVELS,
+    MOTOR,
+    MOTOR_RESULTS,
     RESULTS,
 )
 from propmdao.records.units import Quantity, Range
@@ -28,6 +30,7 @@ def table() -> str:
     parts = {
         "**asked**": ASKED,
         "**found**": RESULTS | HUB_LOADS,
+        "**motor and battery**": MOTOR | MOTOR_RESULTS,
         "**levels**": LEVELS | BROADBAND_LEVELS,
     }
     rows = [HEADS, ("---",) * len(HEADS)]

@@ -22,8 +22,8 @@ from propmdao.acoustics.levels.decibels import spl_db
 from propmdao.analysis.comparisons import Rows, side_by_side
 from propmdao.analysis.wind_tunnel import Points, computed, zero_thrust, zero_thrust_twist_deg
 from propmdao.components.drivers.gradient_search import run_slsqp
-from propmdao.figures.blades import blade_comparison
 from propmdao.figures.measured import performance
+from propmdao.figures.rotor.blades import blade_comparison
 from propmdao.figures.style import save
 from propmdao.propeller.airfoils.airfoil import max_camber_for_design_lift
 

@@ -27,7 +27,8 @@ import numpy as np
 import pytest
 from matplotlib.ticker import EngFormatter, LogLocator, NullLocator
 
-from propmdao.figures.style import GRID, LINE_STYLES, MARKERS, RUN_COLORS, page, save
+from propmdao.figures.contents.palette import LINE_STYLES, MARKERS, RUN_COLORS
+from propmdao.figures.style import GRID, page, save
 
 ROOT = Path(__file__).parents[1]
 PAGE = Path(__file__).with_suffix(".md")

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import gc
 import os
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -114,7 +114,11 @@ def make_case(tmp_path: Path, geometry: GeometryFile, loading: LoadingFile) -> C
     """Write a case of one rotor with two blades; groups can be changed or added to."""
 
     def make(
-        loading: LoadingFile = loading, n_blades: int = 2, omega: float = 100.0, **changes: Any
+        loading: LoadingFile = loading,
+        n_blades: int = 2,
+        omega: float = 100.0,
+        behind_rotor: Sequence[tuple[str, dict]] = (),
+        **changes: Any,
     ) -> Path:
         write_geometry(tmp_path / "geometry.dat", geometry)
         write_loading(tmp_path / "loading.dat", loading)
@@ -144,7 +148,7 @@ def make_case(tmp_path: Path, geometry: GeometryFile, loading: LoadingFile) -> C
         for name, values in changes.items():
             merged = groups[name] | values
             groups[name] = {key: value for key, value in merged.items() if value is not None}
-        case = [*groups.items()]
+        case = [*groups.items(), *behind_rotor]
         for blade in range(n_blades):
             angle = 2 * np.pi * blade / n_blades
             files = {"patchGeometryFile": "geometry.dat", "patchLoadingFile": "loading.dat"}

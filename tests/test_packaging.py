@@ -22,6 +22,7 @@ OPENMDAO_NAMES = {
         "BroadbandComp",
         "GeometryComp",
         "MarchedAerodynamicsComp",
+        "MotorComp",
         "NoiseObjectiveComp",
         "RotationSpeedComp",
         "TrimmedAerodynamicsComp",

@@ -80,7 +80,7 @@ def design_problem(
     n_control : int
         Number of control points of each distribution.
     **options
-        Further options of `PropellerGroup`: fidelity, n_crit, trip and so on.
+        Further options of `PropellerGroup`: blade_element, fidelity, n_crit, trip and so on.
 
     Returns
     -------

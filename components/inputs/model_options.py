@@ -9,7 +9,7 @@ from openmdao.utils.options_dictionary import OptionsDictionary
 
 from propmdao.analysis.request import Request
 from propmdao.records.fidelity import Fidelity, Start, WakeMotion
-from propmdao.records.models import Layers, Model, Trip
+from propmdao.records.models import Layers, Model, SelfNoiseModel
 from propmdao.records.quantities import ASKED
 from propmdao.records.wake_law import WakeLaw
 
@@ -18,7 +18,6 @@ _RECORDS = {
     "wake": (WakeLaw(), "how the prescribed wake moves"),
 }
 _WORDS = {
-    "trip": get_args(Trip),
     "layers": get_args(Layers),
     "start": get_args(Start),
     "wake_motion": get_args(WakeMotion),
@@ -34,6 +33,7 @@ TRANSITION_OPTIONS = ("n_crit", "trip_upper", "trip_lower")
 MODEL_OPTIONS = (
     *_RECORDS,
     "viscous",
+    "blade_element",
     "stall_delay",
     *TRANSITION_OPTIONS,
     "unsteady",
@@ -69,7 +69,14 @@ def declare_model(options: OptionsDictionary, names: Iterable[str] = MODEL_OPTIO
                 allowed = {"values": _WORDS[name]}
             elif name in TRANSITION_OPTIONS:
                 allowed = {"types": (int, float), "allow_none": True}
+            elif name == "trip":
+                allowed = {"check_valid": _check_trip}
             options.declare(name, quantity.default, desc=quantity.meaning, **allowed)
+
+
+def _check_trip(_: str, trip: Any) -> None:
+    """Refuse words that are no trip."""
+    SelfNoiseModel(trip)
 
 
 def model_of(options: OptionsDictionary) -> Model:

@@ -1,4 +1,4 @@
-"""Inputs of the components that solve the lattice: a blade, its sections and the air."""
+"""Inputs of the components that find the loads: a blade, its sections and the air."""
 
 from __future__ import annotations
 
@@ -14,8 +14,9 @@ from propmdao.aerodynamics.rotor_geometry import RotorGeometry
 from propmdao.aerodynamics.sections.laws import ViscousSections
 from propmdao.aerodynamics.sections.polars.family import SectionPolars
 from propmdao.aerodynamics.sections.polars.table import PolarTable
-from propmdao.aerodynamics.solutions import axial, periodic
+from propmdao.aerodynamics.solutions import axial, blade_element, periodic
 from propmdao.aerodynamics.solutions.case import RotorCase
+from propmdao.aerodynamics.solutions.period import tilted_elements
 from propmdao.aerodynamics.wakes.helical import WakeTransport, wake_transport
 from propmdao.components.bases.array_function import Arrays
 from propmdao.components.bases.nodes_comp import STATIC, NodesComp
@@ -39,14 +40,19 @@ class RotorKind(NamedTuple):
     n_azimuths : int or None
         Azimuths of a turn in flight at an incidence, a multiple of the blades; None in axial
         flight.
+    blade_element : bool
+        Whether blade elements take the place of the lattice.
     """
 
     n_blades: int
     n_azimuths: int | None = None
+    blade_element: bool = False
 
     @property
     def solver(self) -> Any:
         """Module that solves for the loads, a `propmdao.aerodynamics.trim.Solver`."""
+        if self.blade_element:
+            return blade_element if self.n_azimuths is None else tilted_elements
         return axial if self.n_azimuths is None else periodic
 
 

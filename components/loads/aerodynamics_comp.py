@@ -1,4 +1,4 @@
-"""Vortex lattice and operating point to thrust, torque and blade loads."""
+"""Blade and operating point to thrust, torque and blade loads, by vortex lattice or elements."""
 
 from __future__ import annotations
 
@@ -21,6 +21,7 @@ from propmdao.aerodynamics.wakes.helical import wake_transport
 from propmdao.components.bases.array_function import Arrays, evaluate
 from propmdao.components.bases.nodes_comp import NodesComp
 from propmdao.components.bases.root_component import RootComponent
+from propmdao.components.inputs.model_options import declare_model
 from propmdao.components.inputs.point_inputs import add_point_inputs, state_at
 from propmdao.components.inputs.rotor_inputs import (
     RotorConstants,
@@ -107,6 +108,9 @@ class AerodynamicsComp(NodesComp, RootComponent):
     loads : bool
         True (default): the loads along the blade, `circulation` and those below it, are outputs.
         Without them derivatives are cheap where many are asked for, as missions do.
+    blade_element : bool
+        Blade elements in annuli instead of the lattice: much faster, less accurate. `circulation`
+        has one row then. False by default.
     n_blades : int
         Number of equally spaced blades.
     fidelity : Fidelity
@@ -139,13 +143,13 @@ class AerodynamicsComp(NodesComp, RootComponent):
         self.options.declare("loads", True, types=bool, desc="loads are outputs")
         declare_rotor(self.options)
         declare_tilted(self.options)
+        declare_model(self.options, ["blade_element"])
 
     def setup(self) -> None:
         fidelity, tilted = self.options["fidelity"], self.options["tilted"]
         n_blades = self.options["n_blades"]
-        self.static = RotorKind(n_blades)
-        if tilted:
-            self.static = RotorKind(n_blades, azimuths_for(fidelity.n_azimuths, n_blades))
+        n_azimuths = azimuths_for(fidelity.n_azimuths, n_blades) if tilted else None
+        self.static = RotorKind(n_blades, n_azimuths, self.options["blade_element"])
         grid = fidelity.period_wake if tilted else fidelity.wake
         self.constants = add_rotor_inputs(self, grid)
         self.search_constants = self._search_constants(self.constants)
@@ -157,7 +161,7 @@ class AerodynamicsComp(NodesComp, RootComponent):
             add_point_inputs(self, ["incidence_deg"])
         add_performance(self, tilted)
         if self.options["loads"]:
-            add_loads(self, fidelity, self.static.n_azimuths)
+            add_loads(self, fidelity, self.static)
         self.search, self.function = _steady, _at_root
         self.state, self.residual = "induced_velocity", "residual"
 
@@ -168,8 +172,12 @@ class AerodynamicsComp(NodesComp, RootComponent):
         """Constants of the search, from those of the function."""
         return constants
 
+    def _has_tilted_wake(self) -> bool:
+        """Whether there is a wake whose length depends on how fast the flight is."""
+        return self.static.n_azimuths is not None and not self.static.blade_element
+
     def found_at(self, inputs: Arrays) -> Mapping[str, Any]:
-        if not self.options["tilted"]:
+        if not self._has_tilted_wake():
             return super().found_at(inputs)
         slow = "rpm" in inputs and is_slow(_advance_ratio(inputs, inputs["rpm"]))
         solution = self._found_in_a_wake(inputs, slow)
@@ -185,7 +193,7 @@ class AerodynamicsComp(NodesComp, RootComponent):
     def found_at_all(
         self, points: Sequence[Arrays], batch_size: int
     ) -> Iterable[Mapping[str, Any]]:
-        if not self.options["tilted"]:
+        if not self._has_tilted_wake():
             return super().found_at_all(points, batch_size)
         return map(self.found_at, points)  # each in the wake of its own length
 

@@ -79,7 +79,7 @@ class MarchedAerodynamicsComp(NodesComp):
     march : Marching
         Length of the march, time step, start and wake.
 
-    The other options are those of `AerodynamicsComp` without `tilted`.
+    The other options are those of `AerodynamicsComp` without `tilted` and `blade_element`.
 
     Raises
     ------
@@ -117,7 +117,7 @@ class MarchedAerodynamicsComp(NodesComp):
         add_point_inputs(self, ["incidence_deg"])
         add_performance(self, hub=True)
         if self.options["loads"]:
-            add_loads(self, fidelity, schedule.steps_per_turn)
+            add_loads(self, fidelity, self.static)
 
     def at_rest(self, inputs: Arrays) -> bool:
         return not inputs["rpm"].any()

@@ -53,7 +53,8 @@ class RotationSpeedComp(NodesComp):
         The two rotation speeds at which the thrust is computed [rpm]; None (default): the bounds
         of `TrimmedAerodynamicsComp`, which are too far apart for this rule.
 
-    The other options are those of `AerodynamicsComp` without `loads` and `tilted`.
+    The other options are those of `AerodynamicsComp` without `loads`, `tilted` and
+    `blade_element`.
 
     Raises
     ------

@@ -8,6 +8,7 @@ from propmdao.aerodynamics.coefficients import coefficients
 from propmdao.aerodynamics.solutions.result import RotorLoads, TiltedLoads
 from propmdao.components.bases.array_function import Arrays
 from propmdao.components.bases.nodes_comp import NodesComp
+from propmdao.components.inputs.rotor_inputs import RotorKind
 from propmdao.records.fidelity import Fidelity
 from propmdao.records.quantities import HUB_LOADS, RESULTS
 from propmdao.records.states import RotorState
@@ -17,13 +18,16 @@ from propmdao.records.units import RAD_PER_S
 PERFORMANCE = tuple(name for name in RESULTS if name not in ("converged", "failure"))
 
 
-def n_loads(fidelity: Fidelity, tilted: bool = False) -> int:
+def n_loads(fidelity: Fidelity, kind: RotorKind) -> int:
     """Return the number of point forces on a blade: bound and chordwise segments, sections.
 
-    At an incidence there is one more on each ring, Bernoulli's unsteady term.
+    At an incidence there is one more on each ring, Bernoulli's unsteady term. Blade elements have
+    one each.
     """
     nc, ns = fidelity.n_chordwise, fidelity.n_spanwise
-    return nc * ns + nc * (ns + 1) + ns + nc * ns * tilted
+    if kind.blade_element:
+        return ns
+    return nc * ns + nc * (ns + 1) + ns + nc * ns * (kind.n_azimuths is not None)
 
 
 def add_performance(component: NodesComp, hub: bool) -> None:
@@ -43,7 +47,7 @@ def add_performance(component: NodesComp, hub: bool) -> None:
         component.add_point_output(quantity.variable, shape=shape, units=units, desc=meaning)
 
 
-def add_loads(component: NodesComp, fidelity: Fidelity, n_azimuths: int | None) -> None:
+def add_loads(component: NodesComp, fidelity: Fidelity, kind: RotorKind) -> None:
     """Declare the loads along the blade, which are the sources of noise.
 
     Parameters
@@ -52,11 +56,11 @@ def add_loads(component: NodesComp, fidelity: Fidelity, n_azimuths: int | None) 
         Component in its ``setup``.
     fidelity : Fidelity
         Numbers of panels.
-    n_azimuths : int or None
-        Azimuths of loads that change around the turn; None for steady ones.
+    kind : RotorKind
+        Azimuths of loads that change around the turn, and whether these are of blade elements.
     """
-    nc, ns = fidelity.n_chordwise, fidelity.n_spanwise
-    n = n_loads(fidelity, n_azimuths is not None)
+    nc, ns = 1 if kind.blade_element else fidelity.n_chordwise, fidelity.n_spanwise
+    n, n_azimuths = n_loads(fidelity, kind), kind.n_azimuths
     around, azimuth = ((), ()) if n_azimuths is None else ((n_azimuths,), ("azimuth",))
     component.axes = {
         "circulation": (*azimuth, "chordwise panel", "strip"),

@@ -72,7 +72,7 @@ OPERATION: tuple[Row, ...] = (
     ("CP", "CP", ".5f"),
 )
 #: Levels at an observer: label, key.
-_LEVELS = (
+LEVEL_ROWS = (
     ("tone at blade passage, dB", "spl_bpf_db"),
     ("thickness noise, dB", "oaspl_thickness_db"),
     ("loading noise, dB", "oaspl_loading_db"),
@@ -125,13 +125,13 @@ def operation_and_levels(
         mean = {
             key: float(energy_sum_db(np.array([each[key] for each in observers])))
             - 10.0 * math.log10(len(observers))
-            for _, key in _LEVELS
+            for _, key in LEVEL_ROWS
             if key in place
         }
         parts[f"mean over {len(observers)} observers"] = ("mean", mean)
     for title, (prefix, levels) in parts.items():
         rows.append((title, "", ""))
-        for label, key in _LEVELS:
+        for label, key in LEVEL_ROWS:
             if key in levels:
                 rows.append((f"  {label}", f"{prefix} {key}", ".2f"))
                 values[f"{prefix} {key}"] = levels[key]
@@ -221,6 +221,26 @@ def _cells(
                 known = isinstance(first, float) and isinstance(value, float)
                 cells.append((value - first if known else None, True))  # type: ignore[operator]
         yield label, form, cells
+
+
+def flat_values(values: Mapping[str, Any]) -> list[float]:
+    """Put the numbers of a band's results into one list.
+
+    Parameters
+    ----------
+    values : mapping of str to float or list of float
+        Results by name, as plain numbers.
+
+    Returns
+    -------
+    list of float
+        The numbers in their order, those of the observers one after the other.
+    """
+    return [
+        number
+        for value in values.values()
+        for number in (value if isinstance(value, list) else [value])
+    ]
 
 
 def side_by_side(rows: Sequence[Row], columns: Mapping[str, Mapping[str, Cell]]) -> Rows:

@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import dataclasses
+import reprlib
 from collections.abc import Mapping
 from typing import Any, TypedDict
 
+import numpy as np
 import numpy.typing as npt
 
 from propmdao.propeller.changes import Change
+from propmdao.propeller.description import Propeller
 from propmdao.records.air import Air, Turbulence
 from propmdao.records.fidelity import Fidelity, GustShape, Marching, Start, WakeMotion
 from propmdao.records.listening import Listening, Surroundings
@@ -66,7 +69,7 @@ class Asked(TypedDict, total=False):
     start: Start
     wake_motion: WakeMotion
     broadband: bool
-    trip: Trip
+    trip: Trip | tuple[Trip, ...] | None
     layers: Layers
     wake: WakeLaw
     n_crit: float | None
@@ -111,6 +114,11 @@ class Request:
                 f"turbulence_intensity {intensity:g} m/s is about broadband noise: ask for"
                 " broadband noise, too"
             )
+
+    def completed(self, propeller: Propeller) -> Request:
+        """Fill in what the model leaves to the propeller."""
+        model = self.model.completed(propeller.transition, propeller.tip, propeller.trip)
+        return dataclasses.replace(self, model=model)
 
     def to_dict(self) -> dict[str, Any]:
         """Return it as plain numbers, the part of ``propmdao analyze --json`` that was asked."""
@@ -169,6 +177,8 @@ class Request:
             record = place.split(".")[0]
             if record in given_records:
                 raise ValueError(f"{name} is given, and {record}, which holds it: give one of them")
+            if isinstance(getattr(ASKED.get(name), "default", None), bool):
+                _require_switch(name, value)
             places.setdefault(place, {})[name] = value
         made: dict[str, Any] = {
             "point": lambda: OperatingPoint(
@@ -181,6 +191,12 @@ class Request:
             "listening": lambda: Listening(**places.get("listening", {})),
         }
         return cls(**{name: given_records.get(name) or make() for name, make in made.items()})
+
+
+def _require_switch(name: str, value: Any) -> None:
+    """Refuse what is neither True nor False, lest words or records count as True."""
+    if not isinstance(value, bool | np.bool_):
+        raise ValueError(f"{name} must be True or False; it is {reprlib.repr(value)}")
 
 
 #: Record that holds each value, as a dotted path.
@@ -197,7 +213,8 @@ def _model(places: Mapping[str, dict[str, Any]]) -> Model:
     broadband = places.get("model.noise", {}).get("broadband", False)
     self_noise = places.get("model.noise.broadband", {})
     for name, value in self_noise.items():
-        if value != ASKED[name].default and not broadband:
+        # "none" asks for nothing that silence has not.
+        if value not in (ASKED[name].default, "none") and not broadband:
             raise ValueError(
                 f"{name} {value!r} is about broadband noise: ask for broadband noise, too"
             )

@@ -6,11 +6,14 @@ import dataclasses
 from functools import partial
 from typing import Any
 
+import jax
 import jax.numpy as jnp
 import numpy as np
 from jax import Array
 from jax.typing import ArrayLike
+from numpy.typing import NDArray
 
+from propmdao.acoustics.broadband.boundary_layer import LIGHT_TRIP, boundary_layer
 from propmdao.acoustics.broadband.rotor import StripFlow, rotor_self_noise
 from propmdao.acoustics.broadband.section import Section
 from propmdao.acoustics.broadband.section_layers import layer_of_sections
@@ -19,6 +22,7 @@ from propmdao.acoustics.inflow.rotor import rotor_inflow_noise
 from propmdao.aerodynamics.lattice.strips import Strips
 from propmdao.aerodynamics.sections.edge_layers.propeller_layers import layers_for
 from propmdao.aerodynamics.sections.edge_layers.tables import (
+    QUANTITIES,
     EdgeLayerTable,
     SectionLayers,
     blade_layers,
@@ -39,6 +43,8 @@ BANDS_HZ = third_octave_centers(50.0, 20e3)
 #: Smallest and largest of NASA RP-1218: chords of 25.4 to 304.8 mm at 31.7 to 71.3 m/s, NACA 0012
 #: from 0 to 25.2 deg from zero lift.
 MEASURED = {"reynolds": (5.5e4, 1.5e6), "mach": (0.0, 0.21), "angle_deg": (0.0, 25.2)}
+
+_MOMENTUM = QUANTITIES.index("momentum")
 
 
 @compiled
@@ -100,8 +106,9 @@ def section_layers(propeller: Propeller, model: Model) -> SectionLayers | None:
     Returns
     -------
     SectionLayers or None
-        Boundary layers of the sections at the transition of the loads, or tripped; None for the
-        fits of NASA RP-1218.
+        Boundary layers of the sections, at each station at the transition of the loads or tripped;
+        None for the fits of NASA RP-1218. The heavy trip adds to the thicknesses what the report's
+        adds to those of its light one.
 
     Raises
     ------
@@ -111,17 +118,33 @@ def section_layers(propeller: Propeller, model: Model) -> SectionLayers | None:
     noise = model.noise.broadband
     if noise is None or noise.layers == "bpm":
         return None
-    tripped = noise.trip != "none"
-    return layers_for(propeller, SHIPPED_TRIPPED if tripped else model.loads.transition)
+    parts = []
+    for trip, here in _stations_by_trip(noise, propeller.r_over_R.size).items():
+        tripped = trip != "none"
+        layers = layers_for(propeller, SHIPPED_TRIPPED if tripped else model.loads.transition)
+        if trip == "heavy":
+            momentum = layers.values[..., _MOMENTUM, :, :] - np.log(LIGHT_TRIP)
+            values = layers.values.at[..., _MOMENTUM, :, :].set(momentum)
+            layers = dataclasses.replace(layers, values=values)
+        parts.append(dataclasses.replace(layers, weights=layers.weights * here[:, None]))
+    return dataclasses.replace(
+        parts[0],
+        values=jnp.concatenate([part.values for part in parts]),
+        weights=jnp.concatenate([part.weights for part in parts], axis=1),
+    )
 
 
-@partial(compiled, static_argnames=("trip",))
+def _stations_by_trip(noise: SelfNoiseModel, n_stations: int) -> dict[Trip, NDArray[np.float64]]:
+    """Stations that have each trip of a model, as 1 and 0."""
+    trips = noise.trips(n_stations)
+    return {
+        trip: np.array([float(each == trip) for each in trips]) for trip in dict.fromkeys(trips)
+    }
+
+
+@compiled
 def with_layers(
-    flow: StripFlow,
-    layers: EdgeLayerTable,
-    angle_of_attack: Array,
-    air: Air,
-    trip: Trip = "none",
+    flow: StripFlow, layers: EdgeLayerTable, angle_of_attack: Array, air: Air
 ) -> StripFlow:
     """Give strips the boundary layers of their own sections.
 
@@ -135,8 +158,6 @@ def with_layers(
         Angle of attack of the sections from their chord line [rad].
     air : Air
         The undisturbed air.
-    trip : {"none", "light", "heavy"}
-        Trip of the layers (static).
 
     Returns
     -------
@@ -146,8 +167,40 @@ def with_layers(
     section = flow.section
     reynolds = section.speed * section.chord / air.kinematic_viscosity
     sides = edge_sides(layers, angle_of_attack, reynolds)
-    layer = layer_of_sections(section.chord, section.angle_of_attack, *sides, trip)
+    layer = layer_of_sections(section.chord, section.angle_of_attack, *sides)
     return dataclasses.replace(flow, layer=layer)
+
+
+@partial(compiled, static_argnames=("noise",))
+def with_fitted_layers(
+    flow: StripFlow, noise: SelfNoiseModel, section_radii: SpanInterpolation, air: Air
+) -> StripFlow:
+    """Give strips the boundary layers that the fits of NASA RP-1218 have with a blade's trips.
+
+    Parameters
+    ----------
+    flow : StripFlow
+        Strips of blade 1, of `strip_flow`.
+    noise : SelfNoiseModel
+        Trips, everywhere or at the blade's stations; between two stations thicknesses and share of
+        laminar shedding go over from those of the one trip to those of the other (static).
+    section_radii : SpanInterpolation
+        From the blade's stations to the middle of the strips.
+    air : Air
+        The undisturbed air.
+
+    Returns
+    -------
+    StripFlow
+        The same strips with their layer.
+    """
+    section, to_strips = flow.section, section_radii.linear
+    state = section.chord, section.speed, section.angle_of_attack, air.kinematic_viscosity
+    parts = [
+        jax.tree.map(partial(jnp.multiply, to_strips @ here), boundary_layer(*state, trip))
+        for trip, here in _stations_by_trip(noise, to_strips.shape[1]).items()
+    ]
+    return dataclasses.replace(flow, layer=jax.tree.map(lambda *q: sum(q), *parts))
 
 
 def flow_of(
@@ -156,7 +209,7 @@ def flow_of(
     section_radii: SpanInterpolation,
     layers: SectionLayers | None,
     air: Air,
-    trip: Trip = "none",
+    noise: SelfNoiseModel,
 ) -> StripFlow:
     """Strips of solved loads as broadband noise sees them.
 
@@ -172,22 +225,22 @@ def flow_of(
         Boundary layers of `section_layers`.
     air : Air
         The undisturbed air.
-    trip : {"none", "light", "heavy"}
-        Trip of the layers.
+    noise : SelfNoiseModel
+        Trips of the layers, which those of `section_layers` have already.
 
     Returns
     -------
     StripFlow
-        Strips of blade 1 at azimuth 0, with the layer of their sections where there are any.
+        Strips of blade 1 at azimuth 0, with the layer of their sections or that of the fits.
     """
     states = loads.sections
     flow = strip_flow(
         loads.strips, states.relative_speed, states.lift_coefficient, blade, section_radii
     )
     if layers is None:
-        return flow
+        return with_fitted_layers(flow, noise, section_radii, air)
     table = blade_layers(layers, blade, section_radii)
-    return with_layers(flow, table, states.angle_of_attack, air, trip)
+    return with_layers(flow, table, states.angle_of_attack, air)
 
 
 def self_noise(
@@ -212,7 +265,7 @@ def self_noise(
     observers : (n_observers, 3) array
         Positions from the rotor centre, flying along [m].
     model : SelfNoiseModel
-        Tripping of the boundary layers, planform of the tip.
+        Planform of the tip, and the trip of boundary layers that `flow` has not.
     bands_hz : (n_bands,) array
         Mid-band frequencies as the observers hear them [Hz].
     turbulence : Turbulence, optional

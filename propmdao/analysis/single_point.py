@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import dataclasses
-from functools import partial
 from typing import Any, Unpack
 
 import jax
@@ -13,17 +12,14 @@ from jax import Array
 
 from propmdao.acoustics.broadband.self_noise import SelfNoise
 from propmdao.acoustics.kinematics.limits import require_outside_rotor, require_subsonic_tip
+from propmdao.acoustics.kinematics.rings import rings_of
 from propmdao.acoustics.propagation.paths import bands_by_paths, sound_paths, tones_by_paths
 from propmdao.acoustics.signals import Tones
 from propmdao.acoustics.sources.formulation1a import tones
 from propmdao.acoustics.sources.periodic import rotor_tones
 from propmdao.acoustics.sources.rotors import Rotor, equally_spaced
 from propmdao.aerodynamics.coefficients import coefficients
-from propmdao.aerodynamics.rotor_geometry import RotorGeometry
-from propmdao.aerodynamics.sections.laws import viscous_sections
 from propmdao.aerodynamics.sections.polars.family import SectionPolars, warn_outside_sections
-from propmdao.aerodynamics.sections.polars.propeller_polars import polars_for
-from propmdao.aerodynamics.sections.polars.sources import polar_sources
 from propmdao.aerodynamics.sections.polars.table import warn_outside
 from propmdao.aerodynamics.solutions import axial, blade_element, periodic
 from propmdao.aerodynamics.solutions.case import RotorCase
@@ -34,17 +30,17 @@ from propmdao.aerodynamics.solutions.edgewise import (
     warn_if_fast,
 )
 from propmdao.aerodynamics.solutions.marching.marched_loads import Progress
+from propmdao.aerodynamics.solutions.period import tilted_elements
 from propmdao.aerodynamics.solutions.result import RotorLoads, TiltedLoads
 from propmdao.aerodynamics.trim import Solver, rotation_bounds, trim
 from propmdao.aerodynamics.wakes.helical import wake_transport
 from propmdao.analysis.elastic.deflections import Solved, deflected
 from propmdao.analysis.elastic.materials import material_of
+from propmdao.analysis.elastic.modelled_blade import ModelledBlade
 from propmdao.analysis.flights.marching import marched, require_marchable
 from propmdao.analysis.request import Asked, Request
 from propmdao.analysis.results import MECHANISMS, Analysis
-from propmdao.analysis.self_noise import BANDS_HZ, flow_of, section_layers, self_noise
-from propmdao.geometry.blade import Blade
-from propmdao.geometry.meshes import MeshRadii, blade_meshes, mesh_radii
+from propmdao.analysis.self_noise import BANDS_HZ, flow_of, self_noise
 from propmdao.propeller.changes import Change
 from propmdao.propeller.description import Propeller
 from propmdao.records.air import require_known_air
@@ -54,7 +50,6 @@ from propmdao.records.panels import Panels
 from propmdao.records.states import OperatingPoint, RotorState
 from propmdao.records.units import RAD_PER_S
 from propmdao.records.wake_law import WakeGrid
-from propmdao.runtime.compilation import compiled
 from propmdao.runtime.finite import require_finite
 
 
@@ -114,98 +109,136 @@ def analyze(
         done with it, while one that has not converged is there to be looked at.
     """
     records = {"point": point, "change": change, "model": model, "listening": listening}
-    request = Request.of(records, **asked)
-    model = request.model.completed(propeller.transition, propeller.tip)
-    request = dataclasses.replace(request, model=model)
-    point, listening = request.point, request.listening
+    request = Request.of(records, **asked).completed(propeller)
+    require_analysable(propeller, request)
+    modelled = ModelledBlade.of(propeller, request.change, request.model, polars)
+    return analysis_of(modelled, request, progress=progress)
+
+
+def require_analysable(propeller: Propeller, request: Request) -> None:
+    """Refuse what is known to have no analysis, before the work.
+
+    Parameters
+    ----------
+    propeller : Propeller
+        The described blade.
+    request : Request
+        What is asked, completed.
+
+    Raises
+    ------
+    ValueError
+        In one line.
+    """
+    point, listening, loads = request.point, request.listening, request.model.loads
     changed = request.change.applied_to(propeller)
-    radius = 0.5 * changed.diameter
-    require_outside_rotor(listening.observers, radius)
+    require_outside_rotor(listening.observers, 0.5 * changed.diameter)
     if listening.surroundings.absorption:
         require_known_air(point.air)
-    if request.model.loads.unsteady is not None:
+    if loads.unsteady is not None:
         require_marchable(point)
-    if request.model.loads.elastic is not None:
+    if loads.elastic is not None:
         point.require_axial("an elastic blade")
-    if request.model.loads.blade_element:
-        point.require_axial("a rotor by blade elements")
-    paths = sound_paths(listening.observers, listening.surroundings, point.incidence_deg)
+        material_of(changed, loads.elastic)
 
-    elastic = model.loads.elastic
-    material = None if elastic is None else material_of(changed, elastic)
-    fidelity, sources = model.fidelity, {}
-    stations = changed.r_over_R
-    radii = mesh_radii(stations, fidelity.n_spanwise, fidelity.n_surface_span)
-    if model.loads.viscous:
-        transition = model.loads.transition
-        if polars is None:
-            measured_drag = model.loads.measured_drag
-            sources = polar_sources(changed, None, transition, measured_drag)
-            polars = polars_for(changed, None, transition, measured_drag)
-        else:
-            sources = dict.fromkeys((name for _, name in changed.airfoils), "given")
-    layers = section_layers(changed, model)
+
+def analysis_of(
+    modelled: ModelledBlade,
+    request: Request,
+    solved: Solved | None = None,
+    progress: Progress | None = None,
+) -> Analysis:
+    """Loads and noise of a blade that is ready, at an operating point.
+
+    Parameters
+    ----------
+    modelled : ModelledBlade
+        The blade as the request changes and models it.
+    request : Request
+        What is asked, completed; `require_analysable` has seen it.
+    solved : Solved, optional
+        Loads that are known, of a batch; by default they are solved for.
+    progress : callable, optional
+        Called after every step of a march in time.
+
+    Returns
+    -------
+    Analysis
+        Loads and noise.
+
+    Raises
+    ------
+    ValueError
+        Where `analyze` raises it.
+    """
+    point, model, listening = request.point, request.model, request.listening
+    fidelity, elastic = model.fidelity, model.loads.elastic
 
     def held(propeller: Propeller) -> Solved:
         """Loads of a propeller that is held in its shape."""
-        blade = Blade.from_propeller(propeller)
-        nodes, panels = _meshes(blade, radii, fidelity.n_chordwise, fidelity.n_contour)
-        sections = None
-        if model.loads.viscous:
-            assert polars is not None
-            delay = float(model.loads.stall_delay)
-            sections = viscous_sections(polars, blade, radii.strips, delay)
-        case = RotorCase(
-            RotorGeometry(nodes, radius, int(propeller.n_blades)),
-            point.at(0.0),
-            sections,
-            wake_transport(model.loads.wake, fidelity.wake),
-            fidelity.n_azimuths,
-        )
-        if model.loads.unsteady is not None:
-            return Solved(blade, panels, case, *marched(case, point, model, progress))
-        if model.loads.blade_element:
-            return Solved(blade, panels, case, *_solve(blade_element, case, point))
-        if point.incidence_deg == 0.0:
-            return Solved(blade, panels, case, *_solve(axial, case, point))
-        return Solved(blade, panels, case, *_tilted(case, point, model))
+        shape = modelled.held(propeller)
+        return shape.solved(shape.case(point), *_loads(shape.case(point), request, progress))
 
-    if material is None:
-        deflection, solved = None, held(changed)
-    else:
-        deflection, solved = deflected(changed, material, held)
+    deflection = None
+    if elastic is not None:
+        deflection, solved = deflected(
+            modelled.changed, material_of(modelled.changed, elastic), held
+        )
+    elif solved is None:
+        solved = held(modelled.changed)
     blade, panels, case, loads, state = solved
-    if polars is not None and model.loads.viscous:
-        warn_outside_sections(polars, blade, stations)
+    if modelled.polars is not None:
+        warn_outside_sections(modelled.polars, blade, modelled.changed.r_over_R)
         _warn_outside_polars(case, loads)
 
+    paths = sound_paths(listening.observers, listening.surroundings, point.incidence_deg)
     points = paths.reshape(-1, 3)
     sound = _tones(panels, loads, case.rotor.n_blades, state, points, fidelity.n_harmonics)
     noise = None
-    if model.noise.broadband is not None:
-        flow = flow_of(loads, blade, radii.strips, layers, point.air, model.noise.broadband.trip)
+    if (broadband := model.noise.broadband) is not None:
+        strips, layers = modelled.radii.strips, modelled.layers
+        flow = flow_of(loads, blade, strips, layers, point.air, broadband)
+        rings = rings_of(points)
+        is_steady = flow.section.speed.ndim == 1
         noise = self_noise(
             flow,
             case.rotor.n_blades,
             state,
-            points,
-            model.noise.broadband,
+            rings.position if is_steady else points,
+            broadband,
             turbulence=point.turbulent,
         )
+        if is_steady:
+            noise = jax.tree.map(lambda bands: bands[rings.ring], noise)
         noise = _noise_by_paths(noise, paths, state, listening.surroundings)
+    diameter = modelled.changed.diameter
     analysis = Analysis(
-        propeller=propeller,
+        propeller=modelled.propeller,
         request=request,
         rpm=float(state.rotation_speed) / RAD_PER_S if point.rpm is None else float(point.rpm),
         loads=loads,
-        coefficients=coefficients(loads.thrust, loads.torque, state, changed.diameter),
+        coefficients=coefficients(loads.thrust, loads.torque, state, diameter),
         tones=tones_by_paths(sound, paths, state, listening.surroundings),
         broadband=noise,
-        polars=sources,
+        polars=modelled.sources,
         deflection=deflection,
     )
     _require_numbers(analysis)
     return analysis
+
+
+def _loads(case: RotorCase, request: Request, progress: Progress | None) -> tuple[Any, RotorState]:
+    """Loads at the operating point by the model that is asked for, and the rotor's state there."""
+    point, model = request.point, request.model
+    if model.loads.unsteady is not None:
+        return marched(case, point, model, progress)
+    if point.incidence_deg == 0.0:
+        return _solve(blade_element if model.loads.blade_element else axial, case, point)
+    if not model.loads.blade_element:
+        return _tilted(case, point, model)
+    tilted, state = _solve(tilted_elements, case, point)
+    warn_if_fast(edgewise_advance_ratio(state, float(case.rotor.radius)), stacklevel=4)
+    return tilted, state
 
 
 def _solve(solver: Solver, case: RotorCase, point: OperatingPoint) -> tuple[Any, RotorState]:
@@ -248,18 +281,14 @@ def _tones(
 ) -> Tones:
     """Tones at the ends of all ways to the observers."""
     if isinstance(loads, RotorLoads):
-        return tones(panels, loads.point_loads, n_blades, state, points, n_harmonics)
+        # A steady rotor's field turns with it: each circle of observers is worked out once.
+        rings = rings_of(points)
+        sound = tones(panels, loads.point_loads, n_blades, state, rings.position, n_harmonics)
+        order = n_blades * np.arange(1, n_harmonics + 1)
+        turned = np.exp(1j * rings.azimuth[:, None] * order)
+        return sound.each(lambda amplitude: amplitude[rings.ring] * turned)
     rotor = Rotor(equally_spaced(n_blades), float(state.rotation_speed), panels, loads.point_loads)
     return rotor_tones(rotor, state.velocity, state.air, points, n_harmonics)
-
-
-@partial(compiled, static_argnames=("n_chordwise", "n_contour"))
-def _meshes(
-    blade: Blade, radii: MeshRadii, n_chordwise: int, n_contour: int
-) -> tuple[Array, Panels]:
-    """Lattice and closed surface of a blade."""
-    meshes = blade_meshes(blade, radii, n_chordwise, n_contour)
-    return meshes.lattice, meshes.panels
 
 
 def _noise_by_paths(
@@ -290,7 +319,7 @@ def _require_numbers(analysis: Analysis) -> None:
         require_finite(name, values, strips, where=where)
     for record in (loads, analysis.coefficients):
         for field in dataclasses.fields(record):
-            if isinstance(value := getattr(record, field.name), Array):
+            if isinstance(value := getattr(record, field.name), Array | np.ndarray | np.floating):
                 require_finite(field.name, value, where=where)
     for name, values in {
         "load_position": loads.point_loads.position,

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 import numpy as np
@@ -25,8 +25,10 @@ _SHORTEST = 0.01  # s
 MAX_CHANNELS = 64  # more than any player has; programs that show sound hold them
 
 
-def pressure_record(analysis: Analysis, duration: float) -> npt.NDArray[np.float64]:
-    """Pressure at every observer, to be repeated seamlessly.
+def pressure_record(
+    analysis: Analysis, duration: float, observers: Sequence[int] | None = None
+) -> npt.NDArray[np.float64]:
+    """Pressure at observers, to be repeated seamlessly.
 
     Parameters
     ----------
@@ -34,6 +36,8 @@ def pressure_record(analysis: Analysis, duration: float) -> npt.NDArray[np.float
         With or without broadband noise.
     duration : float
         About how long [s]: as many blade passages as are nearest to it.
+    observers : sequence of int, optional
+        Indices of the observers; all by default.
 
     Returns
     -------
@@ -47,9 +51,10 @@ def pressure_record(analysis: Analysis, duration: float) -> npt.NDArray[np.float
         If the rotor stands still, or the duration is too short for the lowest band.
     """
     tones = analysis.tones
-    record = tone_record(tones.frequency_hz, tones.total, duration)
+    chosen = slice(None) if observers is None else list(observers)
+    record = tone_record(tones.frequency_hz, np.asarray(tones.total)[chosen], duration)
     if analysis.broadband is not None:
-        power = np.asarray(analysis.broadband.total)
+        power = np.asarray(analysis.broadband.total)[chosen]
         record = record + broadband_record(BANDS_HZ, power, record.shape[-1])
     return record
 

@@ -22,6 +22,8 @@ from propmdao.commands.options import (
     asked_of,
     number,
 )
+from propmdao.commands.output import report_file
+from propmdao.commands.output.drives import add_drive, add_drive_results, motor_of
 from propmdao.commands.output.json_output import print_json
 from propmdao.commands.output.output_files import (
     require_matplotlib,
@@ -61,13 +63,12 @@ examples:
   propmdao analyze apcsf_11x4.7 --rpm 6000 --speed 10 --incidence 70 --arc 1.905 -60 --json
   propmdao analyze apcsf_11x4.7 --rpm 6000 --speed 10 --incidence 70 --figures results --vtk results
   propmdao analyze apcsf_11x4.7 --rpm 6000 --speed 10 --incidence 70 --unsteady --wake free
-  propmdao analyze apcsf_11x4.7 --thrust 1.5 --speed 8 --arc 1.905 -45 --broadband
+  propmdao analyze apcsf_11x4.7 --thrust 1.5 --speed 8 --arc 1.905 -45 --broadband --wav cruise.wav
   propmdao analyze my_blade.toml --rpm 3000:5000:500 --arc 1.905 -45 0 45 --json
-  propmdao analyze apcsf_11x4.7 --rpm 4200 --arc 1.905 -45 --band
-  propmdao analyze apcsf_11x4.7 --rpm 4200 --arc 1.905 -45 --broadband --wav hover.wav
+  propmdao analyze apcsf_11x4.7 --thrust 3 --motor axi_2204_54 --battery-wh 12
+  propmdao analyze apcsf_11x4.7 --rpm 4200 --arc 1.905 -90:90:15 --broadband --report hover.html
   propmdao analyze apcsf_11x4.7 --rpm 4200 --ground 10 --grid 0:40:5 0 -10 --absorption
   propmdao analyze apcsf_11x4.7 --rpm 4200 --speed 8 --level --hemisphere 20 10 --figures results
-  propmdao analyze apcsf_11x4.7 --rpm 4200 --n-crit 9
   propmdao analyze apcsf_11x4.7 --rpm 4200 --trip-upper 0.05 --trip-lower 0.05
   propmdao analyze my_blade.toml --rpm 6000 --elastic --youngs-modulus 11e9 --material-density 1700
   propmdao analyze my_blade.toml --rpm 4200 --polar sg6042 sg6042_re50k.txt sg6042_re100k.txt
@@ -123,6 +124,7 @@ def add_analyze(commands: argparse._SubParsersAction[Any]) -> None:
         " eight solutions more",
     )
     command.add_argument("--json", action="store_true", help="print JSON instead of tables")
+    add_drive(command)
     add_observers(command)
     add_surroundings(command)
     tables = command.add_argument_group("tables", "CSV files with units in their heads.")
@@ -175,6 +177,9 @@ def add_analyze(commands: argparse._SubParsersAction[Any]) -> None:
         action="store_true",
         help="directivity and map of a hemisphere A-weighted",
     )
+    report_file.add_report(
+        group, "numbers, players for the sounds, figures to turn and zoom, inputs and versions"
+    )
     group.add_argument(
         "--vtk",
         type=Path,
@@ -187,6 +192,7 @@ def add_analyze(commands: argparse._SubParsersAction[Any]) -> None:
 
 def _analyze(options: argparse.Namespace) -> None:
     _check(options)
+    motor = motor_of(options)
     listening = listening_of(options, options.incidence_deg)
     _check_observers(options, len(listening.observers))
     asked = asked_of(options) | air_of(options) | {"listening": listening}
@@ -214,7 +220,7 @@ def _analyze(options: argparse.Namespace) -> None:
                 f"--polar {airfoil}: {propeller.name} has no such airfoil; it has"
                 f" {', '.join(dict.fromkeys(names))}"
             )
-    with warning_lines("analyze"):
+    with warning_lines("analyze") as warned:
         drag = options.measured_drag
         polars = polars_for(propeller, own, transition, drag) if options.viscous else None
         shown: dict[str, Any] = {"progress": progress_line()} if options.unsteady else {}
@@ -225,6 +231,7 @@ def _analyze(options: argparse.Namespace) -> None:
         sources |= {name: files[key] for name in sources if (key := _key(name, files))}
         analyses = [dataclasses.replace(analysis, polars=sources) for analysis in analyses]
     results = [analysis.to_dict() for analysis in analyses]
+    add_drive_results(results, motor, options)
     if options.band:
         from propmdao.analysis.uncertainty import band
 
@@ -233,6 +240,12 @@ def _analyze(options: argparse.Namespace) -> None:
             if result["converged"]:
                 result["band"] = band(analysis, polars=polars if own else None).to_dict()
     results[0] |= _write(options, analyses[0], polars)
+    if options.report is not None:
+        from propmdao.figures.pages.analysis_page import analysis_page
+
+        origin = report_file.origin_of(options, warned)
+        page = analysis_page(analyses[0], results[0], origin, options.seconds)
+        results[0]["report"] = report_file.write_report(options, page)
     _write_tables(options, results)
     if options.figures is not None:
         from propmdao.commands.output.results_folder import write_record
@@ -263,6 +276,7 @@ def _check(options: argparse.Namespace) -> None:
     for option, value in (
         ("--wav", options.wav),
         ("--figures", options.figures),
+        ("--report", options.report),
         ("--vtk", options.vtk),
     ):
         if value is not None and _is_list(options.rpm):
@@ -295,12 +309,15 @@ def _check_observers(options: argparse.Namespace, n_observers: int) -> None:
             f"--figure-at must be within 1 ... {n_observers}, the observers in the order of the"
             f" table; it is {options.figure_at}"
         )
-    if options.wav is not None:
-        from propmdao.analysis.sounds import require_sound
+    from propmdao.analysis.sounds import require_sound
 
+    if options.wav is not None:
         require_sound(n_observers, options.seconds, options.full_scale)
+    if options.report is not None and n_observers:
+        require_sound(1, options.seconds)
     if options.figures is not None:
         require_matplotlib("--figures")
+    report_file.require_report(options)
 
 
 def _write_tables(options: argparse.Namespace, results: list[dict[str, Any]]) -> None:

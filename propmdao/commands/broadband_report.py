@@ -47,9 +47,13 @@ def trip_words(model: dict[str, Any]) -> str:
     noise, transition = model["noise"]["broadband"], model["loads"]["transition"]
     places = [transition[f"trip_{side}"] for side in ("upper", "lower")]
     tripped = any(place is not None and place < 1.0 for place in places)
-    if noise["trip"] == "none" and noise["layers"] == "sections" and tripped:
+    trip = noise["trip"] or "none"  # None of a model that is not completed
+    if trip == "none" and noise["layers"] == "sections" and tripped:
         return "tripped as in the polars"
-    return _TRIPPED[noise["trip"]]
+    if isinstance(trip, str):
+        return _TRIPPED[trip]
+    parts = [f"{words} ({trip.count(word)})" for word, words in _TRIPPED.items() if word in trip]
+    return " and ".join(parts) + " stations"
 
 
 def print_mechanisms(console: Console, analyses: Sequence[dict[str, Any]]) -> None:

@@ -24,6 +24,12 @@ from propmdao.commands.output.output_files import (
     save_figures,
     write_csv,
 )
+from propmdao.commands.output.report_file import (
+    add_report,
+    origin_of,
+    require_report,
+    write_report,
+)
 from propmdao.commands.output.warning_lines import warning_lines
 
 if TYPE_CHECKING:
@@ -43,6 +49,7 @@ examples:
   propmdao flyover apcsf_11x4.7 --thrust 1.2 --speed 8 --height 20
   propmdao flyover apcsf_11x4.7 --rpm 4200 --speed 8 --height 20 --sideline 30 --trip heavy
   propmdao flyover apcsf_11x4.7 --rpm 4200 --speed 8 --height 50 --microphone 1.2 --wav over.wav
+  propmdao flyover apcsf_11x4.7 --rpm 4200 --speed 8 --height 50 --report over.html
   propmdao flyover apcmr_8x4.5 --rpm 6000 --speed 10 --incidence 70 --height 20
 
 Levels: dBA re 20 uPa; SEL re (20 uPa)^2 s; EPNL in EPNdB. Exit status: 0, or 2 with one line on
@@ -105,6 +112,7 @@ def add_flyover(commands: argparse._SubParsersAction[Any]) -> None:
     command.add_argument(
         "--figures", type=Path, metavar="FOLDER", help="level against time, as PNG"
     )
+    add_report(command, "levels over time, a player for the sound, figures, inputs and versions")
     command.add_argument("--wav", type=Path, metavar="FILE.wav", help="what the microphone hears")
     command.add_argument(
         "--full-scale",
@@ -142,24 +150,32 @@ def _flyover(options: argparse.Namespace) -> None:
         not options.no_absorption,
     )
     duration = flight.heard_for(options.speed)
-    if options.wav is not None:
+    if options.wav is not None or options.report is not None:
         require_sound(1, duration, options.full_scale)
     Request.of(**asked)
     if options.figures is not None:
         require_matplotlib("--figures")
+    require_report(options)
     from propmdao.analysis.flights.flyovers import fly_over
     from propmdao.analysis.single_point import analyze
 
-    with warning_lines("flyover"):
+    with warning_lines("flyover") as warned:
         propeller = load_propeller(options.propeller)
         analysis = analyze(propeller, **asked)
-    flyover = fly_over(analysis, flight, sound=options.wav is not None)
+    is_heard = options.wav is not None or options.report is not None
+    flyover = fly_over(analysis, flight, sound=is_heard)
     result = analysis.to_dict()
     for key in ("observers", "listening"):  # who listens is in the flight
         del result[key]
     result |= {"flight": dataclasses.asdict(flight)} | flyover.to_dict()
     nearest = flight.miss_distance / float(analysis.state.air.sound_speed)
     result |= _write(options, flyover, nearest)
+    if options.report is not None:
+        from propmdao.figures.pages.flyover_page import flyover_page
+
+        origin = origin_of(options, warned)
+        page = flyover_page(analysis, flight, flyover, result, origin)
+        result["report"] = write_report(options, page)
     if options.json:
         print_json(result)
     else:
@@ -174,7 +190,7 @@ def _write(options: argparse.Namespace, flyover: Flyover, nearest: float) -> dic
     if options.out is not None:
         rows = flyover.to_dict()["history"]
         write_csv(options.out, rows[0], ([f"{row[key]:.4f}" for key in rows[0]] for row in rows))
-    if flyover.pressure is not None:
+    if options.wav is not None and flyover.pressure is not None:
         from propmdao.acoustics.sounds.recordings import common_full_scale
         from propmdao.formats.wav import write_wav
 

@@ -11,18 +11,14 @@ from rich.table import Table
 
 from propmdao.commands.broadband_report import print_mechanisms, trip_words
 from propmdao.commands.output.band_tables import print_bands
+from propmdao.commands.output.drives import drive_lines
 from propmdao.commands.output.marches import march_lines
 from propmdao.commands.output.tables import level_cell, narrow_table, number_cell
+from propmdao.figures.contents.doubts import TONES_ONLY, doubts
 from propmdao.records.listening import Surroundings
 from propmdao.runtime.terminal import plain_console, print_line, printable
 
-# What the numbers leave out stands below them, where it is read.
-INVISCID = "Inviscid flow: no profile drag, so torque and power are low and eta is high."
-BLADE_ELEMENTS = (
-    "Blade elements, no lattice: thrust and torque are up to a fifth higher, on wide blades."
-)
 _TWIST_AT = 0.75  # r/R at which an elastic blade's twist is told
-TONES_ONLY = "Tones only: with broadband noise (--broadband) it is louder, above all in dBA."
 
 
 def print_analyses(analyses: Sequence[dict[str, Any]]) -> None:
@@ -47,7 +43,7 @@ def print_analyses(analyses: Sequence[dict[str, Any]]) -> None:
         print_mechanisms(console, analyses)
     else:
         console.print("No observers: --arc RADIUS ELEVATION... adds their noise.\n")
-    for line in march_lines(analyses):
+    for line in [*march_lines(analyses), *drive_lines(analyses)]:
         print_line(line)
     print_doubts(analyses)
     print_bands(console, analyses)
@@ -147,18 +143,8 @@ def print_doubts(results: Sequence[dict[str, Any]]) -> None:
         Results of one propeller with the keys of ``propmdao analyze --json``.
     """
     console = Console()
-    for result in results:
-        if not result["converged"]:
-            console.print(
-                printable(
-                    f"NOT CONVERGED at {result['rpm']:.1f} rpm, do not use these numbers: "
-                    f"{result['failure']}."
-                )
-            )
-    if not results[0]["model"]["loads"]["viscous"]:
-        console.print(INVISCID)
-    if results[0]["model"]["loads"]["blade_element"]:
-        console.print(BLADE_ELEMENTS)
+    for doubt in doubts(results):
+        console.print(printable(doubt))
 
 
 def print_files(result: dict[str, Any]) -> None:
@@ -167,8 +153,8 @@ def print_files(result: dict[str, Any]) -> None:
     Parameters
     ----------
     result : dict
-        With "sound", of `formats.wav.Recording`, "tables", "figures" and "vtk", names of files; or
-        without.
+        With "sound", of `formats.wav.Recording`, "tables", "figures", "report" and "vtk", names of
+        files; or without.
     """
     if "sound" in result:
         sound = result["sound"]
@@ -180,6 +166,8 @@ def print_files(result: dict[str, Any]) -> None:
         print_line(" ".join(["Tables:", *result["tables"]]))
     if "figures" in result:
         print_line(" ".join(["Figures:", *result["figures"]]))
+    if "report" in result:
+        print_line(f"Report: {result['report']}")
     if "vtk" in result:
         print_line(" ".join(["For ParaView:", *result["vtk"]]))
 

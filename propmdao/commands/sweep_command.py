@@ -26,6 +26,12 @@ from propmdao.commands.output.output_files import (
     require_output_folder,
     save_figures,
 )
+from propmdao.commands.output.report_file import (
+    add_report,
+    origin_of,
+    require_report,
+    write_report,
+)
 from propmdao.commands.output.warning_lines import warning_lines
 from propmdao.records.quantities import VARIABLES
 from propmdao.records.units import Range
@@ -123,6 +129,9 @@ def add_sweep(commands: argparse._SubParsersAction[Any]) -> None:
         help="CT, CP, efficiency and figure of merit over the one or two variables that vary, as"
         " PNG, with record.json: inputs and versions",
     )
+    add_report(
+        command, "results over the one or two variables that vary, points, inputs and versions"
+    )
     add_observers(command)
     add_surroundings(command)
 
@@ -141,10 +150,12 @@ def _sweep(options: argparse.Namespace) -> None:
     if options.figures is not None:
         require_output_folder("--figures", options.figures)
         require_matplotlib("--figures")
-        from propmdao.figures.rotor.sweep_maps import varied_columns
+    require_report(options)
+    if options.figures is not None or options.report is not None:
+        from propmdao.figures.contents.sweeps import varied_columns
 
         columns = varied_columns(points)
-    with warning_lines("sweep"):
+    with warning_lines("sweep") as warned:
         propeller = load_propeller(options.propeller)
     try:
         n_new, failures = sweep(propeller, points, options.out, n_workers=options.workers, **asked)
@@ -156,7 +167,8 @@ def _sweep(options: argparse.Namespace) -> None:
     print_line(f"{counts}; {options.out}")
     if options.figures is not None:
         from propmdao.commands.output.results_folder import write_record
-        from propmdao.figures.rotor.sweep_maps import SHOWN, sweep_maps
+        from propmdao.figures.contents.sweeps import SHOWN
+        from propmdao.figures.rotor.sweep_maps import sweep_maps
 
         write_record(options.figures, options, {propeller.name: propeller}, points=points)
         rows = [
@@ -165,6 +177,16 @@ def _sweep(options: argparse.Namespace) -> None:
         ]
         figures = {"sweep": sweep_maps(rows, columns, propeller.name)}
         print_line(" ".join(["Figures:", *save_figures(options.figures, figures)]))
+    if options.report is not None:
+        from propmdao.analysis.request import Request
+        from propmdao.figures.pages.sweep_page import sweep_page
+
+        done = swept_rows(propeller, points, options.out, **asked)
+        common = Request.of(rpm=0.0, **asked).to_dict()
+        common = {name: common[name] for name in ("model", "listening")}
+        origin = origin_of(options, warned)
+        page = sweep_page(propeller, done, columns, common, failures, origin)
+        print_line(f"Report: {write_report(options, page)}")
     for reason in list(dict.fromkeys(failures))[:3]:
         print_line(f"  failed: {reason}")
 

@@ -8,21 +8,17 @@ from typing import TYPE_CHECKING, NamedTuple, cast
 import numpy as np
 import numpy.typing as npt
 
-from propmdao.figures.style import (
+from propmdao.figures.contents.palette import (
     LEVEL,
     LINE_STYLES,
     LOWEST_LEVEL,
     MARKERS,
     Floats,
     Measured,
-    half_circle,
-    level_line,
     line_colors,
     line_styles,
-    literal,
-    page,
-    say_silent,
 )
+from propmdao.figures.style import half_circle, level_line, literal, page, say_silent
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 import numpy.typing as npt
 
-from propmdao.figures.style import GRID, level_line, line_colors, line_styles, literal, page
+from propmdao.figures.contents.palette import line_colors, line_styles
+from propmdao.figures.style import GRID, level_line, literal, page
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

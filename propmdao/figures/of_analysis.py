@@ -2,24 +2,31 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from propmdao.acoustics.kinematics.observers import directions, on_map
-from propmdao.acoustics.levels.decibels import level_db, oaspl_db
+from propmdao.acoustics.levels.decibels import oaspl_db
 from propmdao.aerodynamics.solutions.marching.marched_loads import MarchedLoads
 from propmdao.aerodynamics.solutions.result import TiltedLoads
-from propmdao.analysis.results import MECHANISMS, Analysis
+from propmdao.analysis.results import Analysis
 from propmdao.analysis.self_noise import BANDS_HZ
+from propmdao.figures.contents.palette import LEVEL, LEVEL_DBA, Floats
+from propmdao.figures.contents.pressures import blade_passage
+from propmdao.figures.contents.sound import (
+    Sound,
+    analysis_sound,
+    mechanism_levels,
+    source_levels,
+)
+from propmdao.figures.contents.subjects import observer_groups, operation
 from propmdao.figures.directivity import directivity, hemisphere_map
 from propmdao.figures.flow.disks import disk_of_loads
 from propmdao.figures.flow.wakes import wake_picture
-from propmdao.figures.pressure import blade_passage, pressure
-from propmdao.figures.sound import Sound, band_levels, source_levels
+from propmdao.figures.pressure import pressure
 from propmdao.figures.spectra import harmonic_spectrum, narrowband_spectrum, third_octaves
-from propmdao.figures.style import LEVEL, LEVEL_DBA, Floats
 from propmdao.records.listening import Listening
 
 if TYPE_CHECKING:
@@ -91,49 +98,6 @@ def analysis_figures(
     return figures
 
 
-def analysis_sound(analysis: Analysis) -> Sound:
-    """Sound of an analysis at all of its observers.
-
-    Parameters
-    ----------
-    analysis : Analysis
-        Analysis with or without broadband noise.
-
-    Returns
-    -------
-    Sound
-        Tones, and broadband noise where there is any.
-    """
-    if analysis.broadband is None:
-        return Sound.of_tones(analysis.tones)
-    return Sound(analysis.tones, BANDS_HZ, np.asarray(analysis.broadband.total))
-
-
-def mechanism_levels(analysis: Analysis, observer: int = 0) -> dict[str, Floats]:
-    """Third octaves of an analysis by mechanism of the broadband noise.
-
-    Parameters
-    ----------
-    analysis : Analysis
-        Analysis with broadband noise.
-    observer : int
-        Index of the observer.
-
-    Returns
-    -------
-    dict of str to (n_bands,) array
-        Levels in the bands `propmdao.analysis.self_noise.BANDS_HZ` [dB]: "total", with the tones,
-        "broadband", and each mechanism by its name.
-    """
-    noise = analysis.broadband
-    assert noise is not None
-    sound = analysis_sound(analysis)
-    powers = {"broadband": sound.broadband[observer]}
-    powers |= {name.replace("_", " "): getattr(noise, name)[observer] for name in MECHANISMS}
-    levels = {name: np.asarray(level_db(power)) for name, power in powers.items()}
-    return {"total": band_levels(sound, observer)} | levels
-
-
 def _at_observer(analysis: Analysis, sound: Sound, observer: int) -> dict[str, Figure]:
     """Spectrum and pressure at one observer, and third octaves with broadband noise."""
     seen = directions(analysis.listening.observers[observer]).rounded()
@@ -151,51 +115,6 @@ def _at_observer(analysis: Analysis, sound: Sound, observer: int) -> dict[str, F
     else:
         figures["spectrum"] = harmonic_spectrum({title: sound}, observer)
     return figures
-
-
-def operation(analysis: Analysis) -> str:
-    """Propeller, rotation speed and flight for titles.
-
-    Parameters
-    ----------
-    analysis : Analysis
-        The analysis.
-
-    Returns
-    -------
-    str
-        In words.
-    """
-    speed, incidence = float(analysis.point.speed), analysis.point.incidence_deg
-    flight = f"{speed:.4g} m/s" if speed else "hover"
-    if incidence:
-        flight += f" at an incidence of {incidence:.4g}°"
-    return f"{analysis.propeller.name}, {analysis.rpm:.0f} rpm, {flight}"
-
-
-def observer_groups(listening: Listening) -> Iterator[tuple[str, slice]]:
-    """Kind and members of each group of observers.
-
-    Parameters
-    ----------
-    listening : Listening
-        Observers; without groups they count as an arc where all are at one distance and azimuth.
-
-    Yields
-    ------
-    kind : str
-        "arc", "point", "circle", "grid" or "hemisphere".
-    members : slice
-        Indices of the group's observers.
-    """
-    if not listening.groups:
-        seen = directions(listening.observers)
-        spread = max(np.ptp(seen.radius), np.ptp(seen.azimuth_deg))
-        yield "arc" if spread < 1e-9 else "point", slice(0, len(listening.observers))
-    start = 0
-    for group in listening.groups:
-        yield group.kind, slice(start, start + group.n)
-        start += group.n
 
 
 def arc_diagram(

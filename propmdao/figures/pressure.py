@@ -3,98 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 import numpy as np
-import numpy.typing as npt
 
-from propmdao.acoustics.levels.decibels import REFERENCE_PRESSURE, pressure_history
-from propmdao.acoustics.signals import Tones
-from propmdao.figures.sound import amplitudes
-from propmdao.figures.style import (
-    LOWEST_LEVEL,
+from propmdao.figures.contents.palette import (
     SOURCE_COLORS,
-    Floats,
     line_colors,
     line_styles,
-    literal,
-    rows_of_axes,
-    say_silent,
 )
+from propmdao.figures.contents.pressures import LOWEST_PRESSURE, PressureRecord
+from propmdao.figures.style import literal, rows_of_axes, say_silent
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
-
-_TIMES = 256  # in a blade passage
-_LOWEST_PRESSURE = REFERENCE_PRESSURE * 10 ** (LOWEST_LEVEL / 20)
-
-
-class PressureRecord(NamedTuple):
-    """Pressure at one observer over time, in parts.
-
-    Attributes
-    ----------
-    time : (n_times,) array
-        Time since blade 1 was at azimuth 0 [s].
-    parts : mapping of str to (n_times,) array
-        Pressure by noise source or another name [Pa].
-    """
-
-    time: Floats
-    parts: Mapping[str, Floats]
-
-
-def blade_passage(tones: Tones, observer: int = 0) -> PressureRecord:
-    """Pressure of tones over one blade passage, by noise source.
-
-    Parameters
-    ----------
-    tones : Tones
-        Amplitudes.
-    observer : int
-        Index of the observer.
-
-    Returns
-    -------
-    PressureRecord
-        Each source and the total.
-
-    Raises
-    ------
-    ValueError
-        If the rotor stands still.
-    """
-    histories = {
-        source: pressure_history(tones.frequency_hz, amplitude[observer], _TIMES)
-        for source, amplitude in amplitudes(tones).items()
-    }
-    time, _ = histories["total"]
-    return PressureRecord(time, {source: history[1] for source, history in histories.items()})
-
-
-def sampled(
-    parts: Mapping[str, npt.ArrayLike], sample_rate: float, duration: float
-) -> PressureRecord:
-    """Beginning of sampled pressures.
-
-    Parameters
-    ----------
-    parts : mapping of str to (n_times,) array
-        Pressure by name, from blade 1 at azimuth 0 on, as long as each other [Pa].
-    sample_rate : float
-        Samples in a second [Hz].
-    duration : float
-        Length of the beginning [s].
-
-    Returns
-    -------
-    PressureRecord
-        The samples of that duration, or all if there are fewer.
-    """
-    n = round(duration * sample_rate)
-    beginnings = {name: np.asarray(record, float)[:n] for name, record in parts.items()}
-    n = min(record.size for record in beginnings.values())
-    return PressureRecord(np.arange(n) / sample_rate, beginnings)
 
 
 def pressure(records: Mapping[str, PressureRecord]) -> Figure:
@@ -103,8 +25,8 @@ def pressure(records: Mapping[str, PressureRecord]) -> Figure:
     Parameters
     ----------
     records : mapping of str to PressureRecord
-        Records by name, one below the other: `blade_passage` makes them of tones, `sampled` of
-        what was made to be heard.
+        Records by name, one below the other: `blade_passage` of `contents.pressures` makes them of
+        tones, `sampled` of what was made to be heard.
 
     Returns
     -------
@@ -116,7 +38,7 @@ def pressure(records: Mapping[str, PressureRecord]) -> Figure:
     for axes, (name, record) in zip(rows, records.items(), strict=True):
         colors, styles = line_colors(record.parts), line_styles(record.parts)
         for i, (part, values) in enumerate(record.parts.items()):
-            if np.sqrt(np.mean(np.square(values))) < _LOWEST_PRESSURE:
+            if np.sqrt(np.mean(np.square(values))) < LOWEST_PRESSURE:
                 continue
             width = 2.0 if part in SOURCE_COLORS else 1.0 + i
             axes.plot(

@@ -10,23 +10,18 @@ import numpy.typing as npt
 
 from propmdao.acoustics.levels.bands import bands_in_bins, tones_in_bins
 from propmdao.acoustics.levels.decibels import level_db, mean_square, spl_db
-from propmdao.figures.sound import Sound, amplitudes, band_edges, band_levels
-from propmdao.figures.style import (
-    GRID,
+from propmdao.figures.contents.palette import (
     LEVEL,
     LOWEST_LEVEL,
     MARKERS,
     RUN_COLORS,
     SOURCE_COLORS,
     Measured,
-    level_line,
     line_colors,
     line_styles,
-    literal,
-    page,
-    rows_of_axes,
-    say_silent,
 )
+from propmdao.figures.contents.sound import Sound, amplitudes, band_edges, band_levels
+from propmdao.figures.style import GRID, level_line, literal, page, rows_of_axes, say_silent
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

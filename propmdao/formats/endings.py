@@ -40,15 +40,14 @@ class PropellerWriter(FileFormat):
     ----------
     items : str
         Name of the items that are counted: stations, triangles.
-    of_section : bool
-        True if the file holds one section, whose r/R the function takes as its third argument.
-    in_units : bool
-        True if the file has a unit of length, which the function takes as its third argument.
+    takes : tuple of str
+        Arguments of the function after path and propeller: "section", the r/R of the one section
+        that the file holds; "reynolds", its Reynolds number; "units", the unit of length; "hub",
+        diameter and height of a hub, or None.
     """
 
     items: str = "stations"
-    of_section: bool = False
-    in_units: bool = False
+    takes: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -64,6 +63,7 @@ class PolarReader(FileFormat):
     several: bool = False
 
 
+_QPROP = FileFormat("propeller file of QPROP or QMIL", "propmdao.formats.exchange.qprop:read_qprop")
 _UIUC = FileFormat(
     "geometry file of UIUC, named like apcsf_9x4.7_geom.txt",
     "propmdao.formats.blade_tables.uiuc:read_named_uiuc_geometry",
@@ -73,6 +73,10 @@ _UIUC = FileFormat(
 PROPELLER_READERS = {
     ".toml": FileFormat("propeller file", "propmdao.formats.toml_files:read_toml"),
     ".pe0": FileFormat("geometry file of APC", "propmdao.formats.blade_tables.pe0:read_pe0"),
+    ".bem": FileFormat("BEM file of OpenVSP", "propmdao.formats.exchange.bem:read_bem"),
+    ".qprop": _QPROP,
+    ".prop": _QPROP,
+    ".xrotor": FileFormat("rotor file of XROTOR", "propmdao.formats.exchange.xrotor:read_xrotor"),
     ".csv": FileFormat(
         "table of a blade with heads", "propmdao.formats.blade_tables.csv_table:read_csv"
     ),
@@ -83,26 +87,56 @@ PROPELLER_READERS = {
 #: Units of STL files: the name of each, and how many of it are a metre.
 STL_UNITS = {"m": ("metres", 1.0), "mm": ("millimetres", 1000.0)}
 
+_STEP = PropellerWriter(
+    "solid blades for CAD in millimetres, with section curves, and --hub (extra cad)",
+    "propmdao.formats.exchange.step:export_step",
+    "solids",
+    ("hub",),
+)
+
 #: Writers of propellers: functions of a path and a `Propeller`.
 PROPELLER_WRITERS = {
     ".stl": PropellerWriter(
         "closed surface of all blades, outward, binary (no hub), in --units",
-        "propmdao.formats.blades:export_stl",
+        "propmdao.formats.exchange.blades:export_stl",
         "triangles",
-        in_units=True,
+        ("units",),
     ),
+    ".step": _STEP,
+    ".stp": _STEP,
     ".toml": PropellerWriter(
         "propeller file, as propmdao reads it", "propmdao.formats.toml_files:write_toml"
     ),
     ".csv": PropellerWriter(
         "chord, blade angle, thickness, camber, sweep and rake at the stations",
-        "propmdao.formats.blades:export_csv",
+        "propmdao.formats.exchange.blades:export_csv",
     ),
     ".dat": PropellerWriter(
         "section at --section, x and z over chord in Selig's order",
-        "propmdao.formats.blades:export_section",
+        "propmdao.formats.exchange.blades:export_section",
         "points",
-        of_section=True,
+        ("section",),
+    ),
+    ".txt": PropellerWriter(
+        "polar of the section at --section and --reynolds, as XFOIL, XFLR5, QBlade and JBLADE have"
+        " it",
+        "propmdao.formats.exchange.section_polar:export_polar",
+        "angles",
+        ("section", "reynolds"),
+    ),
+    ".bem": PropellerWriter(
+        "BEM file of OpenVSP, in metres", "propmdao.formats.exchange.bem:write_bem", "sections"
+    ),
+    ".qprop": PropellerWriter(
+        "propeller file of QPROP", "propmdao.formats.exchange.qprop:write_qprop"
+    ),
+    ".xrotor": PropellerWriter(
+        "rotor file of XROTOR", "propmdao.formats.exchange.xrotor:write_xrotor"
+    ),
+    ".vspscript": PropellerWriter(
+        "script that builds the blade in OpenVSP with its own sections",
+        "propmdao.formats.exchange.vspscript:write_vspscript",
+        "sections",
     ),
 }
 

@@ -88,8 +88,9 @@ def write_toml(path: str | os.PathLike[str], propeller: Propeller) -> int:
     for key in (*TRANSITION, *MATERIAL):
         if (value := getattr(propeller, key)) is not None:
             lines.append(f"{key} = {value!r}")
-    if propeller.tip is not None:
-        lines.append(tomli_w.dumps({"tip": propeller.tip}).rstrip())
+    for key in ("tip", "trip"):
+        if (value := getattr(propeller, key)) is not None:
+            lines.append(tomli_w.dumps({key: value}).rstrip())
     tables = []
     for position, name in propeller.airfoils:
         if name.endswith(COORDINATE_ENDINGS):

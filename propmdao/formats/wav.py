@@ -1,4 +1,4 @@
-"""Calibrated sound files (WAV)."""
+"""Calibrated sound files (WAV), and sounds for pages (FLAC)."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 import soundfile  # type: ignore[import-untyped]
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from propmdao.acoustics.sounds.recordings import SAMPLE_RATE
 from propmdao.records.units import Range
@@ -73,9 +73,44 @@ def write_wav(
         If the pressure is not finite or would be clipped, the full scale is out of range, or the
         number of bits is another one, or the file cannot be written.
     """
-    p = np.asarray(pressure, float)
     if bits not in _CODING:
         raise ValueError(f"bits of a sound file must be 24 or 32; got {bits}")
+    p = _checked(pressure, full_scale)
+    content = _encoded(p, full_scale, sample_rate, ("WAV", _CODING[bits]))
+    with replacing(path) as file:
+        file.write_bytes(content)
+    peak = float(np.abs(p).max())
+    return Recording(Path(path), full_scale, peak, p.shape[-1] / sample_rate)
+
+
+def flac(pressure: ArrayLike, full_scale: float, sample_rate: int = SAMPLE_RATE) -> bytes:
+    """Sound in the format that browsers play and that loses nothing but what 16 bits do not hold.
+
+    Parameters
+    ----------
+    pressure : (n_times,) array_like
+        Record of the pressure [Pa].
+    full_scale : float
+        Pressure of the largest number [Pa]; also in the comment.
+    sample_rate : int
+        Samples per second [Hz].
+
+    Returns
+    -------
+    bytes
+        Content of a FLAC file.
+
+    Raises
+    ------
+    ValueError
+        If the pressure is not finite or would be clipped, or the full scale is out of range.
+    """
+    return _encoded(_checked(pressure, full_scale), full_scale, sample_rate, ("FLAC", "PCM_16"))
+
+
+def _checked(pressure: ArrayLike, full_scale: float) -> NDArray[np.float64]:
+    """Pressure that a file can hold."""
+    p = np.asarray(pressure, float)
     FULL_SCALE.require("full scale", full_scale)
     if p.ndim not in (1, 2) or p.size == 0:
         raise ValueError(f"a sound file holds (n_channels, n_times) pressures; got {p.shape}")
@@ -86,16 +121,21 @@ def write_wav(
         raise ValueError(
             f"pressure would be clipped: its peak is {peak:.4g} Pa, full scale {full_scale:.4g} Pa"
         )
-    # In memory first: the library does not say why a file could not be written.
+    return p
+
+
+def _encoded(
+    p: NDArray[np.float64], full_scale: float, sample_rate: int, coding: tuple[str, str]
+) -> bytes:
+    """Content of a file: in memory, as the library does not say why one could not be written."""
     content = io.BytesIO()
+    container, subtype = coding
     with soundfile.SoundFile(
-        content, "w", sample_rate, np.atleast_2d(p).shape[0], _CODING[bits], format="WAV"
+        content, "w", sample_rate, np.atleast_2d(p).shape[0], subtype, format=container
     ) as sound:
         sound.comment = f"full scale = {full_scale:.9g} Pa"
         sound.write(p.T / full_scale)
-    with replacing(path) as file:
-        file.write_bytes(content.getbuffer())
-    return Recording(Path(path), full_scale, peak, p.shape[-1] / sample_rate)
+    return content.getvalue()
 
 
 _CODING = {24: "PCM_24", 32: "PCM_32"}

@@ -162,6 +162,50 @@ def require_within(
     require(key, f"be {allowed}", holds, values, r)
 
 
+def words(key: str, known: tuple[str, ...], values: Any, r: FloatArray) -> str | tuple[str, ...]:
+    """Return a word that stands for all stations, or one for each of them.
+
+    Parameters
+    ----------
+    key : str
+        Name of what the words say.
+    known : tuple of str
+        Words that there are.
+    values : str or sequence of str
+        Words as the user has them.
+    r : (n_stations,) array
+        Stations that need one word each.
+
+    Returns
+    -------
+    str or (n_stations,) tuple of str
+        The word, or the words.
+
+    Raises
+    ------
+    PropellerError
+        If a word is unknown, or there is not one for each station.
+    """
+    if isinstance(values, str):
+        if values not in known:
+            raise PropellerError(f"{key} must be one of {', '.join(known)}; it is {values!r}")
+        return values
+    if not isinstance(values, list | tuple):
+        raise PropellerError(
+            f"{key} must be one of {', '.join(known)} or a list of these; it is"
+            f" {reprlib.repr(values)}"
+        )
+    if len(values) != r.size:
+        raise PropellerError(f"{key} has {len(values)} values for {r.size} stations of r_over_R")
+    for i, word in enumerate(values):
+        if word not in known:
+            raise PropellerError(
+                f"{key} must be one of {', '.join(known)}; station {i + 1} (r/R {r[i]:.10g}) has"
+                f" {word!r}"
+            )
+    return tuple(values)
+
+
 def stations(values: Any) -> FloatArray:
     """Return r/R of the stations: above 0, rising, the last at the tip.
 

@@ -15,7 +15,7 @@ from propmdao.propeller.checks import PropellerError
 from propmdao.records.quantities import require_asked
 
 if TYPE_CHECKING:
-    from propmdao.records.models import Tip, Transition
+    from propmdao.records.models import Tip, Transition, Trip
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -45,6 +45,8 @@ _OF_AIRFOILS = (
 _UNIFORM = ("sweep_over_R", "rake_over_R", "trailing_edge_over_R", "trailing_edge_angle_deg")
 #: Planforms of a blade's tip, as `propmdao.records.models.Tip` has them.
 TIPS = ("rounded", "square")
+#: Trips of the boundary layers in broadband noise, as `propmdao.records.models.Trip` has them.
+TRIPS = ("none", "light", "heavy")
 #: Transition of the boundary layers, optional numbers of a propeller's file.
 TRANSITION = ("n_crit", "trip_upper", "trip_lower")
 #: Material of a propeller, none of which need be known.
@@ -93,6 +95,10 @@ class Propeller:
         Angle between the surfaces at the trailing edge [deg]; the airfoils' own by default.
     tip : {"rounded", "square"}, optional
         Planform of the tip, for broadband noise; None, the default, says nothing about it.
+    trip : {"none", "light", "heavy"} or sequence of these, optional
+        Trip of the boundary layers in broadband noise (it does not change the loads), everywhere or
+        one for each station from root to tip; None, the default, says nothing about it. An analysis
+        may ask for another one.
     source : str
         Origin of the numbers.
     n_crit, trip_upper, trip_lower : float, optional
@@ -124,6 +130,7 @@ class Propeller:
     trailing_edge_over_R: FloatArray | None = None
     trailing_edge_angle_deg: FloatArray | None = None
     tip: Tip | None = None
+    trip: Trip | tuple[Trip, ...] | None = None
     source: str = ""
     n_crit: float | None = None
     trip_upper: float | None = None
@@ -175,6 +182,8 @@ class Propeller:
                 checks.require_within(key, allowed, value, r)
         if self.tip not in (None, *TIPS):
             raise PropellerError(f"tip must be one of {', '.join(TIPS)}; it is {self.tip!r}")
+        if self.trip is not None:
+            object.__setattr__(self, "trip", checks.words("trip", TRIPS, self.trip, r))
         object.__setattr__(self, "airfoils", checks.airfoil_pairs(self.airfoils))
 
     def __setstate__(self, state: dict[str, Any]) -> None:

@@ -197,9 +197,10 @@ class SelfNoiseModel:
 
     Attributes
     ----------
-    trip : {"none", "light", "heavy"}
-        Trip of the boundary layers in the noise model; it does not change the loads. "none" leaves
-        it to the transition of the loads (`completed`).
+    trip : {"none", "light", "heavy"}, tuple of these, or None
+        Trip of the boundary layers in the noise model, everywhere or at the propeller's stations;
+        it does not change the loads. None leaves it to the propeller's description, and where that
+        says nothing to the transition of the loads (`completed`).
     tip : {"rounded", "square"}
         Planform of the blade's tip. "rounded" leaves it to the propeller's description.
     layers : {"sections", "bpm"}
@@ -212,18 +213,46 @@ class SelfNoiseModel:
         If one of them is another word.
     """
 
-    trip: Trip = "none"
+    trip: Trip | tuple[Trip, ...] | None = None
     tip: Tip = "rounded"
     layers: Layers = "sections"
 
     def __post_init__(self) -> None:
         """Refuse words that the model does not know."""
-        for name, words in (("trip", Trip), ("tip", Tip), ("layers", Layers)):
-            value, known = getattr(self, name), get_args(words)
+        trips = self.trip if isinstance(self.trip, tuple) else (self.trip or "none",)
+        asked = [("trip", trip, Trip) for trip in trips]
+        for name, value, words in (*asked, ("tip", self.tip, Tip), ("layers", self.layers, Layers)):
+            known = get_args(words)
             if value not in known:
                 raise ValueError(f"{name} must be one of {', '.join(known)}; it is {value!r}")
 
-    def completed(self, transition: Transition, tip: Tip | None) -> SelfNoiseModel:
+    def trips(self, n_stations: int) -> tuple[Trip, ...]:
+        """Trip at each station of a propeller.
+
+        Parameters
+        ----------
+        n_stations : int
+            Number of its stations.
+
+        Returns
+        -------
+        (n_stations,) tuple of {"none", "light", "heavy"}
+            Trips from root to tip.
+
+        Raises
+        ------
+        ValueError
+            If the model has trips at another number of stations.
+        """
+        if not isinstance(self.trip, tuple):
+            return (self.trip or "none",) * n_stations
+        if len(self.trip) != n_stations:
+            raise ValueError(f"trip has {len(self.trip)} values for {n_stations} stations")
+        return self.trip
+
+    def completed(
+        self, transition: Transition, tip: Tip | None, trip: Trip | tuple[Trip, ...] | None
+    ) -> SelfNoiseModel:
         """Fill in what is left to the loads and to the propeller.
 
         Parameters
@@ -232,16 +261,20 @@ class SelfNoiseModel:
             Transition of the loads, completed.
         tip : {"rounded", "square"} or None
             Tip of the propeller's description; None says nothing about it.
+        trip : {"none", "light", "heavy"}, tuple of these, or None
+            Trip of the propeller's description, everywhere or at its stations; None says nothing
+            about it.
 
         Returns
         -------
         SelfNoiseModel
-            Model whose fits of boundary layers are tripped where the loads are. Layers of the
-            sections are at the transition of the loads, whatever that is.
+            Model without a None. Where nothing is said, its fits of boundary layers are tripped
+            where the loads are; layers of the sections are at the transition of the loads,
+            whatever that is.
         """
-        trip = self.trip
-        if trip == "none" and self.layers == "bpm":
-            trip = transition.trip_in_noise
+        trip = self.trip or trip or (transition.trip_in_noise if self.layers == "bpm" else "none")
+        if isinstance(trip, tuple) and len(set(trip)) == 1:
+            trip = trip[0]
         rounded = self.tip == "rounded"
         return dataclasses.replace(self, trip=trip, tip=(tip or self.tip) if rounded else self.tip)
 
@@ -277,7 +310,9 @@ class Model:
     noise: NoiseModel = NoiseModel()
     fidelity: Fidelity = Fidelity()
 
-    def completed(self, described: Transition, tip: Tip | None) -> Model:
+    def completed(
+        self, described: Transition, tip: Tip | None, trip: Trip | tuple[Trip, ...] | None
+    ) -> Model:
         """Fill in what the model leaves to the propeller.
 
         Parameters
@@ -286,6 +321,8 @@ class Model:
             Transition of the propeller's description.
         tip : {"rounded", "square"} or None
             Tip of the propeller's description; None says nothing about it.
+        trip : {"none", "light", "heavy"}, tuple of these, or None
+            Trip of the propeller's description in broadband noise; None says nothing about it.
 
         Returns
         -------
@@ -294,6 +331,6 @@ class Model:
         """
         transition, noise = self.loads.transition.completed(described), self.noise
         if (broadband := noise.broadband) is not None:
-            noise = dataclasses.replace(noise, broadband=broadband.completed(transition, tip))
+            noise = dataclasses.replace(noise, broadband=broadband.completed(transition, tip, trip))
         loads = dataclasses.replace(self.loads, transition=transition)
         return dataclasses.replace(self, loads=loads, noise=noise)

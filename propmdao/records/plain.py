@@ -73,13 +73,14 @@ def from_plain(record: type[T], values: Any) -> T:
 
 def _restored(hint: Any, value: Any) -> Any:
     """A field's value, of its type."""
-    options = typing.get_args(hint) if isinstance(hint, types.UnionType) else (hint,)
+    united = typing.get_origin(hint) in (types.UnionType, typing.Union)
+    options = typing.get_args(hint) if united else (hint,)
     if value is None:
         return None
     for option in options:
         if isinstance(value, dict) and dataclasses.is_dataclass(option):
             return from_plain(typing.cast(type, option), value)
-        if typing.get_origin(option) is tuple:
+        if typing.get_origin(option) is tuple and not isinstance(value, str):
             item = typing.get_args(option)[0]
             return tuple(_restored(item, entry) for entry in value)
         if isinstance(value, list) and typing.get_origin(option) is np.ndarray:

@@ -110,7 +110,7 @@ _ASKED = (
         "blade_element", "", "blade elements in annuli in place of the lattice", LOADS, False,
         per_node=False, option="--blade-element",
         help="loads by blade elements in annuli of momentum, with losses at tip and root, in place"
-        " of the lattice: much faster, and up to a fifth more thrust on wide blades; axial flight",
+        " of the lattice: much faster, and up to a fifth more thrust on wide blades",
     ),
     Quantity(
         "stall_delay", "", "stall of the sections delayed by rotation", LOADS, True,
@@ -231,10 +231,10 @@ _ASKED = (
         per_node=False, option="--broadband", help="add the broadband self-noise to the tones",
     ),
     Quantity(
-        "trip", "", "tripping of the boundary layers in broadband noise", SELF_NOISE, "none",
+        "trip", "", "tripping of the boundary layers in broadband noise", SELF_NOISE,
         per_node=False, option="--trip", placeholder="{none,light,heavy}",
-        help="tripped boundary layers in the broadband noise alone, default as in the polars:"
-        " none. Untripped ones shed vortices where they separate laminar; a rough or"
+        help="tripped boundary layers in the broadband noise alone; default the propeller's, or as"
+        " in the polars: none. Untripped ones shed vortices where they separate laminar; a rough or"
         " dusty blade sheds none",
     ),
     Quantity(
@@ -289,12 +289,36 @@ _BROADBAND_LEVELS = (
     Quantity("oaspl_total_dba", "dBA", "A-weighted overall level of tones and broadband noise"),
 )
 
+_MOTOR = (
+    Quantity("speed_constant", "rpm/V", "rotation speed for each volt against the motor",
+        per_node=False, allowed=Range(0.01, 1e6, "rpm/V")),
+    Quantity("resistance", "ohm", "electrical resistance of the motor", per_node=False,
+        allowed=Range(0.0, 1e4, "ohm")),
+    Quantity("no_load_current", "A", "current of the motor without torque", per_node=False,
+        allowed=Range(0.0, 1e4, "A")),
+    Quantity("battery_energy", "W*h", "energy of the battery for one rotor", per_node=False,
+        option="--battery-wh", placeholder="WH", allowed=Range(1e-6, 1e9, "W h")),
+    Quantity("usable_share", "", "part of that energy that may be used", default=0.8,
+        per_node=False, option="--usable-share", placeholder="SHARE", allowed=Range(0.01, 1.0)),
+)  # fmt: skip
+
+_MOTOR_RESULTS = (
+    Quantity("current", "A", "current through the motor"),
+    Quantity("voltage", "V", "voltage at the motor"),
+    Quantity("electrical_power", "W", "power that the motor takes, below 0 of a generator"),
+    Quantity("motor_efficiency", "", "shaft power over that power, below 0 of a generator"),
+    Quantity("endurance", "s", "time for which the usable energy lasts"),
+)
+
 #: What may be asked, by name.
 ASKED = {quantity.name: quantity for quantity in _ASKED}
 #: What an analysis finds, by name.
 RESULTS = {quantity.name: quantity for quantity in _RESULTS}
 #: Force and moment of the rotor on what carries it, by name.
 HUB_LOADS = {quantity.name: quantity for quantity in _HUB_LOADS}
+#: Constants of a motor and its battery, and what they find, by name.
+MOTOR = {quantity.name: quantity for quantity in _MOTOR}
+MOTOR_RESULTS = {quantity.name: quantity for quantity in _MOTOR_RESULTS}
 #: Levels of the tones at an observer, by name.
 LEVELS = {quantity.name: quantity for quantity in _LEVELS}
 #: Levels at an observer that broadband noise adds, by name.

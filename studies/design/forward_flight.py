@@ -18,9 +18,10 @@ import propmdao as pm
 from propmdao.analysis.comparisons import Row, print_comparison, write_comparison
 from propmdao.components import NoiseObjectiveComp, PropellerGroup, designed_blade
 from propmdao.components.drivers.gradient_search import Search, run_slsqp
-from propmdao.figures.blades import blade_comparison
+from propmdao.figures.contents.palette import line_colors, line_styles
 from propmdao.figures.directivity import directivity
-from propmdao.figures.style import GRID, line_colors, line_styles, page, save
+from propmdao.figures.rotor.blades import blade_comparison
+from propmdao.figures.style import GRID, page, save
 from propmdao.records.wake_law import WakeGrid
 
 POINTS = ("hover", "flight")

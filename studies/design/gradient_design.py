@@ -41,9 +41,9 @@ from propmdao.analysis.self_noise import BANDS_HZ
 from propmdao.components.drivers.gradient_search import Search, run_slsqp
 from propmdao.components.drivers.search_history import read_history
 from propmdao.components.noise_objective_comp import soft_maximum_db
-from propmdao.figures.blades import blade_comparison
 from propmdao.figures.designs import searches
 from propmdao.figures.directivity import directivity
+from propmdao.figures.rotor.blades import blade_comparison
 from propmdao.figures.spectra import third_octaves
 from propmdao.figures.style import save
 from propmdao.records.models import Layers, Trip

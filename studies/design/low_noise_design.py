@@ -29,11 +29,12 @@ from propmdao.analysis.comparisons import (
 )
 from propmdao.components import DifferentialEvolutionDriver, PropellerGroup
 from propmdao.components.geometry_comp import blade_distributions
-from propmdao.figures.blades import blade_comparison
+from propmdao.figures.contents.pressures import blade_passage
+from propmdao.figures.contents.sound import Sound, source_levels
 from propmdao.figures.designs.convergence import convergence
 from propmdao.figures.directivity import directivity
-from propmdao.figures.pressure import blade_passage, pressure
-from propmdao.figures.sound import Sound, source_levels
+from propmdao.figures.pressure import pressure
+from propmdao.figures.rotor.blades import blade_comparison
 from propmdao.figures.spectra import harmonic_spectrum
 from propmdao.figures.style import save
 from propmdao.formats.naca_blade import with_naca_sections

@@ -20,10 +20,9 @@ from propmdao.acoustics.kinematics.motion import poses
 from propmdao.acoustics.kinematics.observers import directions, sphere
 from propmdao.acoustics.kinematics.tracks import flyover_track
 from propmdao.analysis.flights.flyover_results import STEP
+from propmdao.figures.contents.sound import analysis_sound, source_levels
 from propmdao.figures.directivity import hemisphere_map
 from propmdao.figures.histories import level_history
-from propmdao.figures.of_analysis import analysis_sound
-from propmdao.figures.sound import source_levels
 from propmdao.figures.style import save
 from propmdao.records.models import Trip
 from propmdao.runtime.output_files import replacing

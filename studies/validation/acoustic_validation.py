@@ -30,10 +30,16 @@ from propmdao.acoustics.sounds.recordings import (
     tone_record,
 )
 from propmdao.analysis.self_noise import BANDS_HZ
+from propmdao.figures.contents.pressures import sampled
+from propmdao.figures.contents.sound import (
+    Sound,
+    analysis_sound,
+    band_levels,
+    mechanism_levels,
+    source_levels,
+)
 from propmdao.figures.directivity import directivity
-from propmdao.figures.of_analysis import analysis_sound, mechanism_levels
-from propmdao.figures.pressure import pressure, sampled
-from propmdao.figures.sound import Sound, band_levels, source_levels
+from propmdao.figures.pressure import pressure
 from propmdao.figures.spectra import narrowband_spectrum, third_octaves
 from propmdao.figures.style import save
 from propmdao.formats.wav import write_wav

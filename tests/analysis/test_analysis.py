@@ -5,9 +5,12 @@ import json
 import numpy as np
 import pytest
 
-from propmdao.acoustics.kinematics.observers import arc, point
+from propmdao.acoustics.kinematics.observers import arc, point, sphere
+from propmdao.acoustics.sources.formulation1a import tones
 from propmdao.analysis.single_point import analyze
 from propmdao.formats.propellers import load_propeller
+from propmdao.geometry.meshes import propeller_surface
+from propmdao.geometry.surface import surface_panels
 from propmdao.records.fidelity import Fidelity
 from propmdao.records.listening import Surroundings
 from propmdao.records.quantities import LEVELS
@@ -44,6 +47,21 @@ def test_results_are_consistent_plain_numbers():
         bands = [band["spl_db"] for band in observer["third_octave"]]
         assert 10 * np.log10(sum(10 ** (level / 10) for level in bands)) == pytest.approx(energy)
         assert [h["frequency_hz"] for h in observer["harmonics"]] == pytest.approx([140, 280, 420])
+
+
+def test_observers_on_a_circle_hear_what_each_would_alone():
+    places = sphere(1.5, [-45.0, -20.0], [0.0, 45.0, 130.0, 250.0])
+    asked = {"rpm": 4200.0, "speed": 8.0, "broadband": True, "fidelity": COARSE}
+    together = analyze(SLOW_FLYER, observers=places, **asked)
+    surface = propeller_surface(SLOW_FLYER, COARSE.n_contour, COARSE.n_surface_span)
+    loads, n_blades = together.loads.point_loads, SLOW_FLYER.n_blades
+    known = tones(surface_panels(surface), loads, n_blades, together.state, places, 3)
+    for name, amplitude in known.parts.items():
+        scale = np.abs(amplitude).max()
+        np.testing.assert_allclose(together.tones.parts[name], amplitude, atol=1e-11 * scale)
+    # At 45 degrees the 24 azimuths of the broadband noise are the same ones.
+    levels = np.asarray(together.broadband.total)
+    np.testing.assert_allclose(levels[1], levels[0], rtol=1e-12)
 
 
 def test_hover_and_standstill_are_ordinary():

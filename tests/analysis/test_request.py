@@ -15,7 +15,7 @@ from propmdao.formats.propellers import load_propeller
 from propmdao.propeller.changes import Change
 from propmdao.propeller.identity import checksum
 from propmdao.records.air import Air, Turbulence
-from propmdao.records.fidelity import Fidelity
+from propmdao.records.fidelity import Fidelity, Marching
 from propmdao.records.listening import Listening, ObserverGroup, Surroundings
 from propmdao.records.models import LoadModel, Model, NoiseModel, SelfNoiseModel, Transition
 from propmdao.records.quantities import ASKED, LEVELS
@@ -228,3 +228,15 @@ def test_a_saved_request_that_is_none_is_refused(spoil, message):
     saved = Request(OperatingPoint(rpm=1.0)).to_dict()
     with pytest.raises(ValueError, match=message):
         Request.from_dict(saved | spoil)
+
+
+@pytest.mark.parametrize("value", ["no", 1, Marching(), np.array([True])])
+def test_a_switch_is_true_or_false(value):
+    with pytest.raises(ValueError, match="unsteady must be True or False; it is .+") as error:
+        Request.of(unsteady=value)
+    assert "\n" not in str(error.value)
+
+
+def test_a_switch_of_an_array_is_a_switch():
+    request = Request.of(rpm=4000.0, viscous=np.array([False])[0])
+    assert not request.model.loads.viscous

@@ -208,6 +208,9 @@ def test_what_was_assumed_about_a_propeller_file_is_one_line(
         (f"analyze {PROPELLER} --rpm 4000 --arc 1 0 --wav a.mp3", "a.mp3: the file must end in"),
         (f"analyze {PROPELLER} --rpm 4000 --arc 1 0 --wav no/a.wav", "there is no folder no"),
         (f"analyze {PROPELLER} --rpm 4000 --circle 2 0 65 --wav a.wav", "at most 64 observers"),
+        (f"analyze {PROPELLER} --rpm 1:2:1 --report a.html", "--report is of one operating point"),
+        (f"analyze {PROPELLER} --rpm 4000 --report a.pdf", "a.pdf: the file must end in .html"),
+        (f"analyze {PROPELLER} --rpm 4000 --report no/a.html", "--report no/a.html: there is no"),
         (f"analyze {PROPELLER} --rpm 4000 --full-scale 1", "--full-scale is of a sound file"),
         (f"analyze {PROPELLER} --rpm 4000 --polar e63", "--polar e63 has no file"),
         (f"analyze {PROPELLER} --rpm 4000 --polar e63 no_such.txt", "no_such.txt"),
@@ -345,7 +348,7 @@ def test_help_explains_every_option(capsys: pytest.CaptureFixture[str]) -> None:
     options += (
         " --broadband --trip --layers --band --wav --seconds --full-scale --figures --figure-at"
     )
-    options += " --figure-dba --vtk --json --out --spectra --quiet"
+    options += " --figure-dba --report --vtk --json --out --spectra --quiet"
     for option in options.split():
         assert option in text
     assert "examples:" in text

@@ -55,6 +55,12 @@ def test_nothing_is_said_without_broadband_noise():
         ("none", "sections", 0.1, "tripped as in the polars"),
         ("none", "bpm", 0.1, "untripped"),
         ("heavy", "sections", 0.1, "heavily tripped"),
+        (
+            ["none", "light", "light"],
+            "sections",
+            1.0,
+            "untripped (1) and lightly tripped (2) stations",
+        ),
     ],
 )
 def test_trips_are_told(trip, layers, lower, words):

@@ -13,6 +13,7 @@ import pytest
 import propmdao
 from propmdao.commands.program import main
 from propmdao.propeller.catalog import catalog_names
+from propmdao.propeller.motors import motors
 
 PROPELLER = "apcsf_11x4.7"
 
@@ -21,7 +22,7 @@ def test_list_names_the_whole_catalogue(capsys: pytest.CaptureFixture[str]) -> N
     assert main(["list"]) == 0
     table = capsys.readouterr().out
     assert catalog_names()
-    assert all(name in table for name in catalog_names())
+    assert all(name in table for name in [*catalog_names(), *motors()])
 
 
 def test_list_as_json_says_where_the_numbers_come_from(capsys: pytest.CaptureFixture[str]) -> None:

@@ -172,3 +172,14 @@ def test_partials_at_nodes(problem_at, assert_directional):
     prob = problem_at(2, **POINTS)
     prob.run_model()
     assert_directional(prob, 1e-6)
+
+
+def test_layers_bring_their_trips_along(propeller, small):
+    options = {"propeller": propeller, "observers": OBSERVERS, "fidelity": small}
+    comp = BroadbandComp(layers=layers_for(propeller), trip="heavy", **options)
+    prob = om.Problem(reports=False)
+    prob.model.add_subsystem("comp", comp)
+    with pytest.raises(ValueError, match="trip 'heavy' is about the fits of NASA RP-1218"):
+        prob.setup()
+    with pytest.raises(ValueError, match="trip must be one of none, light, heavy; it is 'some'"):
+        BroadbandComp(trip="some", **options)

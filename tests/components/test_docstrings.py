@@ -58,6 +58,7 @@ def systems(propeller, small, polars):
                 "layers": layers_for(propeller),
             }
         ],
+        "MotorComp": [{"motor": "axi_2204_54", "battery": True}],
         "NoiseObjectiveComp": [{"shape": 3}],
         "PropellerGroup": [
             {**noise, "propeller": propeller, "broadband": True, "turbulent_inflow": True},

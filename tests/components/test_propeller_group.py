@@ -40,9 +40,11 @@ def problem(propeller, small):
 
 @pytest.mark.parametrize(
     ("viscous", "trip"),
-    [(True, "none"), pytest.param(True, "heavy", marks=pytest.mark.slow), (False, "none")],
+    [(True, "outside"), pytest.param(True, "heavy", marks=pytest.mark.slow), (False, "none")],
 )
 def test_group_agrees_with_analyze(problem, propeller, small, viscous, trip):
+    if trip == "outside":
+        trip = tuple("light" if r > 0.6 else "none" for r in propeller.r_over_R)
     prob = problem(viscous=viscous, broadband=viscous, trip=trip)
     prob.setup()
     prob.run_model()

@@ -66,6 +66,8 @@ def test_study_of_the_readme_starts(
     script = checkout / words[0]
     if script.name in ("mission.py", "level_flight.py"):
         pytest.importorskip("dymos")
+    if script.name == "openconcept_mission.py":
+        pytest.importorskip("openconcept")
     monkeypatch.syspath_prepend(script.parent)
     monkeypatch.setattr("sys.argv", [str(script), "--help"])
     with pytest.raises(SystemExit) as end:

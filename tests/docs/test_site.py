@@ -15,6 +15,8 @@ import pytest
 
 import propmdao
 from propmdao.commands.program import build_parser
+from propmdao.propeller.electric_drive import drive_result
+from propmdao.propeller.motors import catalog_motor
 
 DOCS = Path(__file__).parents[2] / "docs"
 PAGES = {str(path.relative_to(DOCS)): path.read_text("utf-8") for path in DOCS.rglob("*.md")}
@@ -152,6 +154,8 @@ def test_the_json_schema_is_that_of_results() -> None:
         observers=propmdao.arc(1.905, [-45.0]),
     )  # fmt: skip
     result = json.loads(json.dumps(analysis.to_dict()))
+    motor = catalog_motor("axi_2204_54")
+    result["drive"] = drive_result(motor, analysis.rpm, float(analysis.loads.torque), 10.0)
     jsonschema.validate(result, schema.schema())
     del result["observers"][0]["oaspl_db"]
     with pytest.raises(jsonschema.ValidationError):

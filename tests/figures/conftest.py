@@ -20,7 +20,7 @@ MEASURED = {"total": ([-45.0, 0.0], [60.0, 62.0])}
 
 
 def sound(seed: int, bpf_hz: float):
-    from propmdao.figures.sound import Sound
+    from propmdao.figures.contents.sound import Sound
 
     rng = np.random.default_rng(seed)
     fall = 1e-3 * 10.0 ** -np.arange(4.0)  # 20 dB from one harmonic to the next
@@ -42,7 +42,7 @@ def sounds():
 @pytest.fixture(scope="session")
 def levels(sounds):
     """Overall levels of the first sound by noise source."""
-    from propmdao.figures.sound import source_levels
+    from propmdao.figures.contents.sound import source_levels
 
     return source_levels(sounds["before"])
 
@@ -59,13 +59,14 @@ def propellers():
 @pytest.fixture(scope="session")
 def figures(sounds, levels, propellers):
     """Every kind of figure by name."""
-    from propmdao.figures.blades import blade_comparison
+    from propmdao.figures.contents.pressures import blade_passage, sampled
+    from propmdao.figures.contents.sound import Sound, band_levels, source_levels
     from propmdao.figures.designs.convergence import convergence
     from propmdao.figures.designs.spectra_over_each_other import spectra_over_each_other
     from propmdao.figures.directivity import directivity, hemisphere_map
     from propmdao.figures.histories import level_history
-    from propmdao.figures.pressure import blade_passage, pressure, sampled
-    from propmdao.figures.sound import Sound, band_levels, source_levels
+    from propmdao.figures.pressure import pressure
+    from propmdao.figures.rotor.blades import blade_comparison
     from propmdao.figures.spectra import harmonic_spectrum, narrowband_spectrum, third_octaves
 
     tones = {name: Sound.of_tones(sound.tones) for name, sound in sounds.items()}

@@ -9,8 +9,8 @@ from numpy.testing import assert_allclose
 pytest.importorskip("matplotlib")
 
 from propmdao.acoustics.levels.decibels import oaspl_db
+from propmdao.figures.contents.sound import amplitudes
 from propmdao.figures.directivity import directivity, hemisphere_map
-from propmdao.figures.sound import amplitudes
 
 ELEVATIONS = np.linspace(-90.0, 90.0, 13)
 

@@ -18,8 +18,8 @@ from propmdao.acoustics.levels.weighting import level_dba
 from propmdao.acoustics.signals import Tones
 from propmdao.analysis.results import MECHANISMS
 from propmdao.analysis.self_noise import BANDS_HZ
-from propmdao.figures.of_analysis import analysis_figures, analysis_sound, mechanism_levels
-from propmdao.figures.sound import band_levels
+from propmdao.figures.contents.sound import analysis_sound, band_levels, mechanism_levels
+from propmdao.figures.of_analysis import analysis_figures
 from propmdao.records.listening import Listening, ObserverGroup, Surroundings
 
 FREE_FIELD = Surroundings()

@@ -9,7 +9,7 @@ from numpy.testing import assert_allclose
 pytest.importorskip("matplotlib")
 
 from propmdao.acoustics.levels.decibels import oaspl_db
-from propmdao.figures.pressure import sampled
+from propmdao.figures.contents.pressures import sampled
 
 
 def test_a_blade_passage_has_the_overall_level(sounds, figures, line):

@@ -9,9 +9,9 @@ from numpy.testing import assert_allclose
 pytest.importorskip("matplotlib")
 
 from propmdao.acoustics.levels.decibels import oaspl_db, spl_db
-from propmdao.figures.sound import amplitudes, band_levels
+from propmdao.figures.contents.palette import MARKERS
+from propmdao.figures.contents.sound import amplitudes, band_levels
 from propmdao.figures.spectra import third_octaves
-from propmdao.figures.style import MARKERS
 
 
 def test_harmonics_have_the_levels_of_each_source(sounds, figures):

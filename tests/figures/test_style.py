@@ -14,8 +14,9 @@ from matplotlib import colors
 from matplotlib.text import Text
 
 from propmdao.analysis.self_noise import BANDS_HZ
+from propmdao.figures.contents.palette import SOURCE_COLORS, line_colors, line_styles
 from propmdao.figures.spectra import third_octaves
-from propmdao.figures.style import SOURCE_COLORS, line_colors, line_styles, literal, page, save
+from propmdao.figures.style import literal, page, save
 from propmdao.runtime.output_files import OutputError
 
 SOUNDS = [
@@ -117,7 +118,7 @@ def test_lines_differ_in_style_as_well_as_in_colour():
     assert line_styles(["alone"]) == {"alone": "-"}
 
 
-@pytest.mark.parametrize("module", ["blades", "directivity", "of_analysis", "sound", "spectra"])
+@pytest.mark.parametrize("module", ["rotor.blades", "directivity", "of_analysis", "spectra"])
 def test_missing_matplotlib_is_one_line_that_says_what_to_install(module):
     code = f"import sys; sys.modules['matplotlib'] = None; import propmdao.figures.{module}"
     run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)
@@ -128,7 +129,8 @@ def test_missing_matplotlib_is_one_line_that_says_what_to_install(module):
 def test_nothing_but_figures_needs_matplotlib():
     code = (
         "import sys; sys.modules['matplotlib'] = None;"
-        "import propmdao.analysis.single_point, propmdao.components, propmdao.analysis.comparisons"
+        "import propmdao.analysis.single_point, propmdao.components, propmdao.analysis.comparisons;"
+        "from propmdao.figures.contents import disk_loads, distributions, palette, sound, subjects"
     )
     subprocess.run([sys.executable, "-c", code], check=True)
 

@@ -15,6 +15,7 @@ from propmdao.records.models import (
     SelfNoiseModel,
     Transition,
 )
+from propmdao.records.plain import from_plain, to_plain
 
 
 def test_by_default_loads_are_viscous_and_noise_is_of_the_tones():
@@ -22,7 +23,7 @@ def test_by_default_loads_are_viscous_and_noise_is_of_the_tones():
     assert model.loads.viscous and model.loads.stall_delay
     assert model.loads.transition.completed() == Transition(5.0, FREE, FREE)
     assert model.noise.broadband is None
-    assert SelfNoiseModel() == SelfNoiseModel(trip="none", tip="rounded", layers="sections")
+    assert SelfNoiseModel() == SelfNoiseModel(trip=None, tip="rounded", layers="sections")
 
 
 def test_equal_models_are_one_model_to_the_compiler():
@@ -41,6 +42,11 @@ def test_equal_models_are_one_model_to_the_compiler():
     ("record", "asked", "message"),
     [
         (SelfNoiseModel, {"trip": "some"}, "trip must be one of none, light, heavy; it is 'some'"),
+        (
+            SelfNoiseModel,
+            {"trip": ("light", "some")},
+            "trip must be one of none, light, heavy; it is 'some'",
+        ),
         (SelfNoiseModel, {"tip": "round"}, "tip must be one of rounded, square; it is 'round'"),
         (SelfNoiseModel, {"layers": "own"}, "layers must be one of sections, bpm; it is 'own'"),
         (Transition, {"n_crit": 0.0}, "n_crit must be within 0.1 ... 30; it is 0"),
@@ -85,11 +91,12 @@ def test_what_is_asked_of_transition_goes_before_the_description_and_that_before
 @pytest.mark.parametrize(
     ("upper", "lower", "word", "trip"),
     [
-        (FREE, FREE, "none", "none"),
-        (0.05, FREE, "none", "none"),  # the other side sheds its vortices
-        (0.05, 0.9, "none", "none"),
-        (0.05, 0.1, "none", "light"),
-        (0.0, 0.5, "none", "light"),
+        (FREE, FREE, None, "none"),
+        (0.05, FREE, None, "none"),  # the other side sheds its vortices
+        (0.05, 0.9, None, "none"),
+        (0.05, 0.1, None, "light"),
+        (0.0, 0.5, None, "light"),
+        (0.05, 0.1, "none", "none"),
         (0.05, 0.1, "heavy", "heavy"),  # what is asked of the noise alone
         (FREE, FREE, "heavy", "heavy"),
     ],
@@ -99,15 +106,41 @@ def test_blades_tripped_on_both_sides_are_tripped_in_the_noise(upper, lower, wor
         LoadModel(transition=Transition(trip_upper=upper)),
         NoiseModel(SelfNoiseModel(word, layers="bpm")),
     )
-    completed = model.completed(Transition(n_crit=3.0, trip_lower=lower), None)
+    completed = model.completed(Transition(n_crit=3.0, trip_lower=lower), None, None)
     assert completed.loads.transition == Transition(3.0, upper, lower)
     assert completed.noise.broadband == SelfNoiseModel(trip, layers="bpm")
-    assert completed.completed(Transition(), None) == completed  # a saved result, asked again
+    assert (
+        completed.completed(Transition(), None, "light") == completed
+    )  # a saved result, asked again
 
 
 def test_the_tip_is_that_of_the_propeller_where_nothing_else_is_asked() -> None:
     noisy = Model(noise=NoiseModel(SelfNoiseModel()))
     for described, tip in ((None, "rounded"), ("square", "square"), ("rounded", "rounded")):
-        completed = noisy.completed(Transition(), described).noise.broadband
-        assert completed == SelfNoiseModel(tip=tip)
-    assert Model().completed(Transition(), "square").noise.broadband is None
+        completed = noisy.completed(Transition(), described, None).noise.broadband
+        assert completed == SelfNoiseModel("none", tip=tip)
+    assert Model().completed(Transition(), "square", "light").noise.broadband is None
+
+
+@pytest.mark.parametrize(
+    ("asked", "described", "trip"),
+    [
+        (None, None, "none"),
+        (None, "heavy", "heavy"),
+        (None, ("none", "light", "heavy"), ("none", "light", "heavy")),
+        (None, ("light", "light", "light"), "light"),
+        ("heavy", ("none", "light", "none"), "heavy"),
+        ("none", "light", "none"),
+    ],
+)
+def test_trips_are_those_of_the_propeller_where_nothing_else_is_asked(asked, described, trip):
+    noisy = Model(noise=NoiseModel(SelfNoiseModel(asked)))
+    noise = noisy.completed(Transition(), None, described).noise.broadband
+    assert noise == SelfNoiseModel(trip)
+    assert from_plain(SelfNoiseModel, to_plain(noise)) == noise
+    assert noise.trips(3) == (trip if isinstance(trip, tuple) else (trip,) * 3)
+
+
+def test_trips_are_at_the_stations():
+    with pytest.raises(ValueError, match="trip has 2 values for 3 stations"):
+        SelfNoiseModel(("none", "light")).trips(3)

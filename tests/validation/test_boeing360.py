@@ -12,7 +12,7 @@ import pytest
 from propmdao.analysis.wopwop.foreign_case import run_case
 from propmdao.formats.wopwop.geometry_file import read_geometry, write_geometry
 from propmdao.formats.wopwop.loading_file import read_loading, write_loading
-from propmdao.formats.wopwop.pressure_file import read_pressure
+from propmdao.formats.wopwop.outputs.pressure_file import read_pressure
 
 
 @pytest.fixture(scope="module")

@@ -87,7 +87,8 @@ def rotor_self_noise(
     frequency_hz : (n_bands,) array
         Mid-band frequencies as the observers hear them, see `third_octave_centers` [Hz].
     model : SelfNoiseModel
-        Trip of the boundary layers that have the report's fits, planform of the tip (static).
+        Trip of the boundary layers where the strips have none of their own: the report's fits, with
+        one trip for all; planform of the tip (static).
     n_azimuths : int
         Number of equal steps in the turn (static): those of the sections where their flow changes.
 
@@ -114,12 +115,14 @@ def rotor_self_noise(
     state = jax.tree.map(lambda q: jnp.asarray(q, float), state)
     section, layer, air = strips.section, strips.layer, state.air
     if layer is None:
+        if isinstance(model.trip, tuple):
+            raise ValueError("trips by station are known to whoever knows the stations: give layer")
         layer = boundary_layer(
             section.chord,
             section.speed,
             section.angle_of_attack,
             air.kinematic_viscosity,
-            model.trip,
+            model.trip or "none",
         )
     frequency = jnp.asarray(frequency_hz, float)[:, None, None]
     tip = tip_section(strips)

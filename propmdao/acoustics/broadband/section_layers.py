@@ -10,10 +10,9 @@ import jax.numpy as jnp
 from jax import Array
 from jax.typing import ArrayLike
 
-from propmdao.acoustics.broadband.boundary_layer import LIGHT_TRIP, BoundaryLayer, nonzero_chord
+from propmdao.acoustics.broadband.boundary_layer import BoundaryLayer, nonzero_chord
 from propmdao.acoustics.broadband.smooth import ramp, smooth_step
 from propmdao.records.loads import EdgeSide
-from propmdao.records.models import Trip
 
 #: Shape factors of a laminar layer on a flat plate (Blasius) and where it separates: Drela and
 #: Giles, Viscous-inviscid analysis of transonic and low Reynolds number airfoils, AIAA J. 25
@@ -30,7 +29,6 @@ def layer_of_sections(
     angle_of_attack: ArrayLike,
     upper: EdgeSide,
     lower: EdgeSide,
-    trip: Trip = "none",
 ) -> BoundaryLayer:
     """Boundary layer of sections whose both sides are known.
 
@@ -41,16 +39,13 @@ def layer_of_sections(
     angle_of_attack : array
         Angle from zero lift [rad]; its sign tells which side is the suction side.
     upper, lower : EdgeSide
-        Both sides at the trailing edge; of tripped sections where there is a trip.
-    trip : {"none", "light", "heavy"}
-        Trip. The heavy one adds to the thicknesses what the report's adds to those of its light
-        one (static).
+        Both sides at the trailing edge.
 
     Returns
     -------
     BoundaryLayer
         Thicknesses, of the shape to which the arguments broadcast, and the share of laminar vortex
-        shedding: 0 where tripped.
+        shedding: 0 where the layer is tripped, because it is turbulent.
 
     Notes
     -----
@@ -65,10 +60,9 @@ def layer_of_sections(
     on_top = smooth_step(jnp.rad2deg(jnp.asarray(angle_of_attack)), _SIDES)
     suction = jax.tree.map(lambda up, low: low + on_top * (up - low), upper, lower)
     pressure = jax.tree.map(lambda up, low: up + on_top * (low - up), upper, lower)
-    factor = nonzero_chord(chord) / (LIGHT_TRIP if trip == "heavy" else 1.0)
-    thick_s, displacement_s, momentum_s = _thicknesses(suction, factor)
-    thick_p, displacement_p, momentum_p = _thicknesses(pressure, factor)
-    shedding = _laminar_share(pressure)
+    c = nonzero_chord(chord)
+    thick_s, displacement_s, momentum_s = _thicknesses(suction, c)
+    thick_p, displacement_p, momentum_p = _thicknesses(pressure, c)
     return BoundaryLayer(
         thickness_pressure=thick_p,
         thickness_suction=thick_s,
@@ -76,13 +70,13 @@ def layer_of_sections(
         displacement_suction=displacement_s,
         momentum_pressure=momentum_p,
         momentum_suction=momentum_s,
-        shedding=shedding if trip == "none" else jnp.zeros_like(shedding),
+        shedding=_laminar_share(pressure),
     )
 
 
-def _thicknesses(side: EdgeSide, factor: Array) -> tuple[Array, Array, Array]:
+def _thicknesses(side: EdgeSide, chord: Array) -> tuple[Array, Array, Array]:
     """Thickness, displacement and momentum thickness of a side [m]."""
-    momentum = side.momentum_over_chord * factor
+    momentum = side.momentum_over_chord * chord
     shape = _LEAST_SHAPE + ramp(side.shape_factor - _LEAST_SHAPE, _SHAPE_CORNER)
     displacement = momentum * shape
     return momentum * (3.15 + 1.72 / (shape - 1)) + displacement, displacement, momentum

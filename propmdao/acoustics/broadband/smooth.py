@@ -84,5 +84,5 @@ def smooth_step(x: ArrayLike, half_width: float) -> Array:
     array
         Values of the same shape.
     """
-    t = (jnp.clip(x, -half_width, half_width) / half_width + 1) / 2
+    t = (jnp.clip(jnp.asarray(x) / half_width, -1.0, 1.0) + 1) / 2  # exactly 0 and 1 outside
     return t * t * (3 - 2 * t)

@@ -40,22 +40,48 @@ class Rings:
     normal: Array
 
 
-def _chordwise_operators(n_chordwise: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Matrices from nodes to quarter points, three-quarter points and slopes there: (nc, nc + 1).
+def panel_fractions(n_chordwise: int) -> tuple[np.ndarray, np.ndarray]:
+    """Chord fractions of the quarter and the three-quarter points of the panels, (nc,) each."""
+    x = lattice_chord_fraction(n_chordwise)
+    return x[:-1] + 0.25 * np.diff(x), x[:-1] + 0.75 * np.diff(x)
+
+
+def _from_nodes(n_chordwise: int, fractions: np.ndarray) -> np.ndarray:
+    """Matrix from nodes to points between them at chord fractions, (n, nc + 1)."""
+    x = lattice_chord_fraction(n_chordwise)
+    return np.array([np.interp(fractions, x, row) for row in np.eye(n_chordwise + 1)]).T
+
+
+def strip_points(nodes: Array, fractions: np.ndarray) -> tuple[Array, Array]:
+    """Points in the strips at chord fractions, and the normals of the camber surface there.
 
     A panel's own slope is that of the camber line at its middle, short by a quarter panel of
     curvature at the collocation point: 0.6 deg of twist at 4 % camber and 8 panels. The slope of
     the spline through the nodes leaves 0.06 deg (E63, Clark-Y, NACA 4412 at 8 cosine panels).
+
+    Parameters
+    ----------
+    nodes : (nc + 1, ns + 1, 3) array
+        Panel corners, from leading edge and root [m].
+    fractions : (n,) array
+        Chord fractions.
+
+    Returns
+    -------
+    points, normals : (n, ns, 3) arrays
+        Points [m], and unit normals toward the suction side.
     """
-    x = lattice_chord_fraction(n_chordwise)
-    at_quarter = x[:-1] + 0.25 * np.diff(x)
-    at_three_quarter = x[:-1] + 0.75 * np.diff(x)
-    identity = np.eye(n_chordwise + 1)
-    quarter, three_quarter = (
-        np.array([np.interp(wanted, x, row) for row in identity]).T
-        for wanted in (at_quarter, at_three_quarter)
-    )
-    return quarter, three_quarter, CubicSpline(x, identity)(at_three_quarter, 1)
+    nc, ns = nodes.shape[0] - 1, nodes.shape[1] - 1
+    slope = CubicSpline(lattice_chord_fraction(nc), np.eye(nc + 1))(fractions, 1)
+    f = jnp.asarray(strip_middle(ns))[None, :, None]
+    line = _along(jnp.asarray(_from_nodes(nc, fractions)), nodes)
+    points = (1.0 - f) * line[:, :-1] + f * line[:, 1:]
+    tangent = _along(jnp.asarray(slope), nodes)
+    chordwise = (1.0 - f) * tangent[:, :-1] + f * tangent[:, 1:]
+    spanwise = line[:, 1:] - line[:, :-1]
+    # Leading to trailing edge (-y) times root to tip (+x) points up, to the suction side.
+    normals = jnp.cross(chordwise, spanwise)
+    return points, normals / jnp.linalg.norm(normals, axis=-1, keepdims=True)
 
 
 def vortex_rings(nodes: Array) -> Rings:
@@ -71,19 +97,11 @@ def vortex_rings(nodes: Array) -> Rings:
     Rings
         Lattice of blade 1.
     """
-    nc, ns = nodes.shape[0] - 1, nodes.shape[1] - 1
-    quarter, three_quarter, slope = (jnp.asarray(m) for m in _chordwise_operators(nc))
+    nc = nodes.shape[0] - 1
+    quarter, three_quarter = panel_fractions(nc)
     behind = nodes[-1:] + 0.25 * (nodes[-1:] - nodes[-2:-1])
-    corner = jnp.concatenate([_along(quarter, nodes), behind])
-    f = jnp.asarray(strip_middle(ns))[None, :, None]
-    line = _along(three_quarter, nodes)
-    collocation = (1.0 - f) * line[:, :-1] + f * line[:, 1:]
-    tangent = _along(slope, nodes)
-    chordwise = (1.0 - f) * tangent[:, :-1] + f * tangent[:, 1:]
-    spanwise = line[:, 1:] - line[:, :-1]
-    # Leading to trailing edge (-y) times root to tip (+x) points up, to the suction side.
-    normal = jnp.cross(chordwise, spanwise)
-    normal = normal / jnp.linalg.norm(normal, axis=-1, keepdims=True)
+    corner = jnp.concatenate([_along(jnp.asarray(_from_nodes(nc, quarter)), nodes), behind])
+    collocation, normal = strip_points(nodes, three_quarter)
     return Rings(corner, collocation.reshape(-1, 3), normal.reshape(-1, 3))
 
 

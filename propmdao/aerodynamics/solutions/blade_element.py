@@ -42,10 +42,11 @@ from propmdao.records.loads import PointLoads
 from propmdao.records.pytrees import Scalar, record
 from propmdao.runtime.compilation import compiled
 
-_TOLERANCE = 1.0e-6  # relative, in the inflow angle, before the last step
+# Relative, in the inflow angle, before the last step: derivatives are taken there.
+_TOLERANCE = 1.0e-10
 # The swirl of an annulus that no air passes would be infinite: |sin phi| is kept above this,
 # smoothly. At an inflow angle of 3 deg it changes the momentum by 0.02 %.
-_LEAST_SINE = 1.0e-3
+LEAST_SINE = 1.0e-3
 
 
 @record
@@ -111,18 +112,22 @@ def inflow_angles(flow: BladeElements) -> Array:
     fixed = jax.lax.stop_gradient((flow, laws))
 
     def missing(phi: Array, _: tuple[()]) -> tuple[Array, tuple[()]]:
-        return -_momentum(*fixed, phi) / slope, ()
+        return -_momentum(fixed[0], _element(*fixed, phi), phi) / slope, ()
 
-    guess, slope = _guess(*fixed)
-    downwash = _momentum(*fixed, jnp.zeros_like(guess)) < 0.0
+    zero = jnp.zeros_like(fixed[0].strips.radius)
+    still = _element(*fixed, zero)
+    guess, slope = _guess(fixed[0], still)
+    downwash = _momentum(fixed[0], still, zero) < 0.0
     right = jnp.full_like(guess, 0.5 * jnp.pi)
     low, high = jnp.where(downwash, 0.0, -right), jnp.where(downwash, right, 0.0)
     phi, _ = decreasing_root(missing, low, high, Guess(guess, ()), _TOLERANCE, straight=True)
     # One Newton step squares the error left, and in it alone the arguments count: it gives the
     # derivatives.
     phi = jax.lax.stop_gradient(phi)
-    by_angle = jax.jvp(lambda at: _momentum(*fixed, at), (phi,), (jnp.ones_like(phi),))[1]
-    return phi - _momentum(flow, laws, phi) / by_angle
+    by_angle = jax.jvp(
+        lambda at: _momentum(fixed[0], _element(*fixed, at), at), (phi,), (jnp.ones_like(phi),)
+    )[1]
+    return phi - _momentum(flow, _element(flow, laws, phi), phi) / by_angle
 
 
 @compiled
@@ -195,14 +200,29 @@ def solution(
     return _rotor_loads(flow.turning(rotation_speed), phi)
 
 
-class _Element(NamedTuple):
-    """Elements at an inflow angle: coefficients with the speed W, and what they follow from."""
+class Element(NamedTuple):
+    """Elements in air that meets them, which is a unit vector or a velocity.
 
-    force: Array  # (ns, 3), with chord, width and W
+    Attributes
+    ----------
+    force : (ns, 3) array
+        Force over that of the dynamic pressure of 1 m/s on chord times width, [m^2/s^2] where the
+        air is a velocity.
+    c_n, c_t : (ns,) arrays
+        Part of the force along the thrust, and against the rotation.
+    alpha : (ns,) array
+        Angle of attack of the sections [rad].
+    share : (ns,) array
+        Size of the part of the air that is in the plane of the sections.
+    cl, cd : (ns,) arrays
+        Coefficients of lift and drag.
+    """
+
+    force: Array
     c_n: Array
     c_t: Array
     alpha: Array
-    share: Array  # of W, in the plane of the section
+    share: Array
     cl: Array
     cd: Array
 
@@ -218,12 +238,36 @@ def _laws(flow: BladeElements) -> SectionLaws | None:
     return section_laws(strips, jnp.hypot(turned, flown), share, case.state.air, case.sections)
 
 
-def _element(flow: BladeElements, laws: SectionLaws | None, phi: Array) -> _Element:
-    strips = flow.strips
-    x, y, _ = strips.quarter_chord.T
-    against = jnp.stack([y, -x, jnp.zeros_like(x)], axis=1) / strips.radius[:, None]
+def _element(flow: BladeElements, laws: SectionLaws | None, phi: Array) -> Element:
+    """Elements in air of the speed 1 at an inflow angle."""
     downward = jnp.array([0.0, 0.0, -1.0])
-    wind = jnp.cos(phi)[:, None] * against + jnp.sin(phi)[:, None] * downward
+    wind = jnp.cos(phi)[:, None] * against_rotation(flow.strips) + jnp.sin(phi)[:, None] * downward
+    return element_in(flow.strips, laws, wind)
+
+
+def against_rotation(strips: Strips) -> Array:
+    """Directions against the rotation at the quarter points of the sections, (ns, 3)."""
+    x, y, _ = strips.quarter_chord.T
+    return jnp.stack([y, -x, jnp.zeros_like(x)], axis=1) / strips.radius[:, None]
+
+
+def element_in(strips: Strips, laws: SectionLaws | None, wind: Array) -> Element:
+    """Elements in air that meets them.
+
+    Parameters
+    ----------
+    strips : Strips
+        Elements of blade 1.
+    laws : SectionLaws or None
+        Polars of the elements; None for thin airfoils without drag.
+    wind : (ns, 3) array
+        Direction of the air, or its velocity.
+
+    Returns
+    -------
+    Element
+        Coefficients and angles.
+    """
     backward, upward = ((wind * axis).sum(axis=1) for axis in (strips.backward, strips.upward))
     alpha, share = jnp.arctan2(upward, backward), jnp.hypot(upward, backward)
     if laws is None:
@@ -235,10 +279,12 @@ def _element(flow: BladeElements, laws: SectionLaws | None, phi: Array) -> _Elem
     lift = cosine * strips.upward - sine * strips.backward
     drag = cosine * strips.backward + sine * strips.upward
     force = (share**2)[:, None] * (cl[:, None] * lift + cd[:, None] * drag)
-    return _Element(force, force[:, 2], (force * against).sum(axis=1), alpha, share, cl, cd)
+    c_t = (force * against_rotation(strips)).sum(axis=1)
+    return Element(force, force[:, 2], c_t, alpha, share, cl, cd)
 
 
-def _solidity(flow: BladeElements) -> Array:
+def solidity_of(flow: BladeElements) -> Array:
+    """Share of the annuli that the blades take, (ns,)."""
     strips = flow.strips
     area = flow.case.rotor.n_blades * strips.chord * strips.width
     return area / (2.0 * jnp.pi * strips.radius * (flow.outer - flow.inner))
@@ -246,10 +292,10 @@ def _solidity(flow: BladeElements) -> Array:
 
 def _sine(phi: Array) -> Array:
     """|sin phi|, smooth at 0."""
-    return jnp.sqrt(jnp.sin(phi) ** 2 + _LEAST_SINE**2)
+    return jnp.sqrt(jnp.sin(phi) ** 2 + LEAST_SINE**2)
 
 
-def _loss(flow: BladeElements, phi: Array) -> Array:
+def loss_at(flow: BladeElements, phi: Array) -> Array:
     """Prandtl's loss F at tip and root."""
     r, sine, half = flow.strips.radius, _sine(phi), 0.5 * flow.case.rotor.n_blades
     # The quarter line of a swept tip may end a little beyond the tip radius.
@@ -258,24 +304,23 @@ def _loss(flow: BladeElements, phi: Array) -> Array:
     return (2.0 / jnp.pi) ** 2 * jnp.arccos(jnp.exp(-tip)) * jnp.arccos(jnp.exp(-hub))
 
 
-def _momentum(flow: BladeElements, laws: SectionLaws | None, phi: Array) -> Array:
+def _momentum(flow: BladeElements, element: Element, phi: Array) -> Array:
     """g(phi) over the speed Omega r, (ns,)."""
-    element, solidity, loss = _element(flow, laws, phi), _solidity(flow), _loss(flow, phi)
+    solidity, loss = solidity_of(flow), loss_at(flow, phi)
     advance = flow.case.state.speed / (flow.case.state.rotation_speed * flow.strips.radius)
     momentum = 4.0 * loss * _sine(phi)
     axial = momentum * jnp.sin(phi) - solidity * element.c_n
     return axial - advance * (momentum * jnp.cos(phi) + solidity * element.c_t)
 
 
-def _guess(flow: BladeElements, laws: SectionLaws | None) -> tuple[Array, Array]:
+def _guess(flow: BladeElements, still: Element) -> tuple[Array, Array]:
     """Inflow angle for small angles and a lift of 2 pi per radian, and the slope of g there.
 
     g is 4 phi (phi - V / Omega r) - 2 pi sigma (theta - phi) then, with theta the blade angle from
-    zero lift.
+    zero lift, which elements at an inflow angle of 0 meet.
     """
-    lift = 2.0 * jnp.pi * _solidity(flow)
+    lift = 2.0 * jnp.pi * solidity_of(flow)
     advance = flow.case.state.speed / (flow.case.state.rotation_speed * flow.strips.radius)
-    still = _element(flow, laws, jnp.zeros_like(lift))
     theta = still.alpha - flow.strips.zero_lift_angle
     b = lift - 4.0 * advance
     root = jnp.sqrt(b * b + 16.0 * lift * jnp.abs(theta))
@@ -287,7 +332,7 @@ def _guess(flow: BladeElements, laws: SectionLaws | None) -> tuple[Array, Array]
 def _forces(flow: BladeElements, phi: Array) -> tuple[Array, SectionStates]:
     """Forces on the elements of blade 1, (ns, 3) [N], and how its sections work."""
     state, strips, laws = flow.case.state, flow.strips, _laws(flow)
-    element, solidity, loss = _element(flow, laws, phi), _solidity(flow), _loss(flow, phi)
+    element, solidity, loss = _element(flow, laws, phi), solidity_of(flow), loss_at(flow, phi)
     momentum = 4.0 * loss * _sine(phi)
     turned = state.rotation_speed * strips.radius
     speed = momentum * turned / (momentum * jnp.cos(phi) + solidity * element.c_t)
@@ -299,7 +344,7 @@ def _forces(flow: BladeElements, phi: Array) -> tuple[Array, SectionStates]:
         lift_coefficient=element.cl,
         drag_coefficient=element.cd,
         borrowed_lift=jnp.zeros_like(speed),
-        residual=_momentum(flow, laws, phi) / solidity,
+        residual=_momentum(flow, element, phi) / solidity,
     )
     return force, states
 

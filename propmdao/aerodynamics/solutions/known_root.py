@@ -14,8 +14,9 @@ from typing import Any
 import jax.numpy as jnp
 from jax import Array
 
-from propmdao.aerodynamics.solutions import axial, periodic
+from propmdao.aerodynamics.solutions import axial, blade_element, periodic
 from propmdao.aerodynamics.solutions.case import RotorCase
+from propmdao.aerodynamics.solutions.period import tilted_elements
 from propmdao.aerodynamics.solutions.result import RotorLoads, TiltedLoads, unless_still
 from propmdao.records.pytrees import Scalar
 
@@ -33,7 +34,8 @@ def solved_at(
     Parameters
     ----------
     solver : module
-        `solutions.axial` or `solutions.periodic`.
+        `solutions.axial`, `solutions.periodic`, or `solutions.blade_element` and
+        `solutions.period.tilted_elements`, whose elements find their inflow without it.
     induced_velocity : float
         Induced velocity at the disk, that of the solver's `solve` [m/s].
     case : RotorCase
@@ -44,6 +46,9 @@ def solved_at(
     loads, residual : RotorLoads or TiltedLoads, float
         Loads, and the induced velocity of their thrust less the given one, 0 at the root [m/s].
     """
+    if solver in (blade_element, tilted_elements):
+        elements = solver.solve(case)
+        return elements, elements.induced_velocity - induced_velocity
     rotation_speed = case.state.rotation_speed
     turning = jnp.asarray(rotation_speed > 0.0)
     flow = solver.flow_at(case.turning(jnp.where(turning, rotation_speed, 1.0)))
@@ -61,7 +66,7 @@ def trimmed_at(
     Parameters
     ----------
     solver : module
-        `solutions.axial` or `solutions.periodic`.
+        One of these.
     rotation_speed : float
         Rotation speed, that of `trim.solve_for_thrust` [rad/s].
     case : RotorCase

@@ -40,7 +40,7 @@ from propmdao.records.loads import PeriodicLoads
 from propmdao.records.pytrees import Scalar
 from propmdao.runtime.compilation import compiled
 
-_TOLERANCE = 1.0e-9  # relative, in the induced velocity
+_TOLERANCE = 1.0e-7  # relative, in the induced velocity: 1e-8 of the loads, by a straight line
 
 
 _Params = tuple[TiltedFlow, Array]  # with the thrust guessed

@@ -28,9 +28,11 @@ from jax import Array
 
 from propmdao.aerodynamics.rotor_geometry import RotorGeometry
 from propmdao.aerodynamics.wakes.ages import wake_azimuths
-from propmdao.records.pytrees import Scalar, record
+from propmdao.records.pytrees import Scalar, record, static
 from propmdao.records.states import RotorState
 from propmdao.records.wake_law import WakeGrid, WakeLaw
+
+_NEAR_DEG = 45.0
 
 
 @record
@@ -43,10 +45,13 @@ class WakeTransport:
         Speed of the wake's parts.
     ages : (n_nodes,) array
         Azimuths behind the blade, from 0 [rad]; `wakes.ages.wake_azimuths` spaces them.
+    n_near : int
+        Rings behind a blade that are near to it: those younger than an eighth of a turn.
     """
 
     law: WakeLaw
     ages: Array | np.ndarray
+    n_near: int = static(1)
 
 
 def wake_transport(law: WakeLaw = WakeLaw(), grid: WakeGrid = WakeGrid()) -> WakeTransport:  # noqa: B008 - frozen
@@ -64,7 +69,9 @@ def wake_transport(law: WakeLaw = WakeLaw(), grid: WakeGrid = WakeGrid()) -> Wak
     WakeTransport
         Law and ages, as the solutions take them.
     """
-    return WakeTransport(law, wake_azimuths(grid))
+    ages = wake_azimuths(grid)
+    n_near = int(np.searchsorted(ages[1:-1], np.radians(_NEAR_DEG)))
+    return WakeTransport(law, ages, max(n_near, 1))
 
 
 def helical_wake(

@@ -7,6 +7,8 @@ wake goes on.
 
 from __future__ import annotations
 
+import dataclasses
+
 import jax
 import jax.numpy as jnp
 import numpy as np
@@ -56,6 +58,12 @@ class Sheets:
             self.shed_core[:n_rings],
         )
 
+    def older(self, n_rings: int) -> Sheets:
+        """The part of the sheets behind so many rings next to the blades."""
+        return Sheets(
+            self.nodes[:, :, n_rings:], self.trailing_core[n_rings:], self.shed_core[n_rings:]
+        )
+
 
 def aged_sheets(nodes: Array, ages: Array, state: RotorState, initial: Scalar) -> Sheets:
     """Sheets whose cores have grown with their age.
@@ -97,6 +105,9 @@ class WakeParts:
         two time steps and the next one.
     n_near : int
         Rings next to the blades with all filaments.
+    n_close : int or None
+        Rings next to the blades that act on every point, the young ones among them; the flow of all
+        others is read between a few points of each strip (`lattice.chord_lines`). None: all do.
     """
 
     chosen: Array
@@ -104,6 +115,7 @@ class WakeParts:
     length: Scalar
     n_young: int = static()
     n_near: int = static()
+    n_close: int | None = static(None)
 
 
 def fewer_filaments(edge: Array, n_filaments: int) -> tuple[np.ndarray, np.ndarray]:
@@ -155,17 +167,66 @@ def wake_velocities(
         Velocity [m/s].
     """
     n = parts.n_near
-    # Rings are closed on both sides of the cut: the near sheet ends with a ring of no circulation.
-    near = sheet_velocities(
-        points, sheets.youngest(n + 1), ring[..., : n + 1].at[..., n].set(0.0), present
-    )
-    older = Sheets(
-        sheets.nodes[parts.chosen, :, n:], sheets.trailing_core[n:], sheets.shed_core[n:]
-    ).scaled(parts.length)
+    near = youngest_velocities(points, sheets, n, ring, present)
+    old = sheets.older(n)
+    older = dataclasses.replace(old, nodes=old.nodes[parts.chosen]).scaled(parts.length)
     strips = jnp.einsum("ks,bsr->bkr", parts.to_strips, ring[..., n:])
     strips, places = (x.astype(SINGLE) for x in (strips / parts.length, points / parts.length))
     none = jnp.zeros(strips.shape[:2], SINGLE)
     return near + sheet_velocities(places, older, strips, none).astype(float)
+
+
+def youngest_velocities(
+    points: Array, sheets: Sheets, n_rings: int, ring: Array, present: Array
+) -> Array:
+    """Velocity at points by the rings of sheets next to the blades.
+
+    Parameters
+    ----------
+    points : (n_points, 3) array
+        Points at which the velocity is wanted [m].
+    sheets : Sheets
+        Sheets of ns strips behind all blades.
+    n_rings : int
+        Rings that act.
+    ring : (n_blades, ns, n_rings) array
+        Circulation of all rings [m^2/s].
+    present : (n_blades, ns) array
+        Circulation of the strips of the blades [m^2/s].
+
+    Returns
+    -------
+    (3, n_points) array
+        Velocity [m/s].
+    """
+    # Rings are closed on both sides of the cut: this sheet ends with a ring of no circulation.
+    ended = ring[..., : n_rings + 1].at[..., n_rings].set(0.0)
+    return sheet_velocities(points, sheets.youngest(n_rings + 1), ended, present)
+
+
+def older_velocities(points: Array, sheets: Sheets, parts: WakeParts, ring: Array) -> Array:
+    """Velocity at points by the rings that are not close to the blades.
+
+    Parameters
+    ----------
+    points : (n_points, 3) array
+        Points at which the velocity is wanted [m].
+    sheets : Sheets
+        Sheets of ns strips behind all blades.
+    parts : WakeParts
+        Parts of the sheets.
+    ring : (n_blades, ns, n_rings) array
+        Circulation of their rings [m^2/s].
+
+    Returns
+    -------
+    (3, n_points) array
+        Velocity [m/s].
+    """
+    n = parts.n_close or 0
+    left = dataclasses.replace(parts, n_near=parts.n_near - n)
+    still = jnp.zeros(ring.shape[:2])
+    return wake_velocities(points, sheets.older(n), left, ring[..., n:], still)
 
 
 def sheet_velocities(points: Array, sheets: Sheets, ring: Array, present: Array) -> Array:

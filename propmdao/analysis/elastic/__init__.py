@@ -1,1 +1,1 @@
-"""A blade that gives under its loads: its material, and loads and shape that belong together."""
+"""Blades ready for their loads: held in their shape, or giving under them."""

@@ -175,7 +175,7 @@ def _flow(analysis: Analysis, propeller: Propeller, model: Model) -> StripFlow:
         strip_interpolation(propeller.r_over_R, model.fidelity.n_spanwise),
         section_layers(propeller, model),
         analysis.point.air,
-        noise.trip,
+        noise,
     )
 
 
@@ -183,7 +183,7 @@ def _with_noise(model: Model, propeller: Propeller) -> Model:
     """Model of an analysis, with the broadband noise that a flyover has in any case."""
     noise = model.noise.broadband or SelfNoiseModel()
     model = dataclasses.replace(model, noise=NoiseModel(noise))
-    return model.completed(propeller.transition, propeller.tip)
+    return model.completed(propeller.transition, propeller.tip, propeller.trip)
 
 
 def _broadband(

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import os
-import warnings
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import ExitStack, closing
 from functools import partial
-from typing import Any, Unpack
+from itertools import chain
+from typing import Any, TypeVar, Unpack, cast
 
 from tqdm import tqdm
 
@@ -30,7 +30,13 @@ from propmdao.runtime.locks import locked
 from propmdao.runtime.output_files import make_folder, require_writable
 from propmdao.runtime.worker_processes import results_in_order, start_workers
 
+Argument = TypeVar("Argument")
+Result = TypeVar("Result")
+
 _N_WORKERS = Range(1, 256)
+#: Points that are analysed together: as many as their blades and loads fit into memory, and few
+#: enough that the lattice's are shared out evenly.
+_WINDOW, _WINDOW_OF_WORKERS = 256, 4
 
 
 _RESULTS = [name for name in ("rpm", *RESULTS) if name != "failure"]
@@ -106,10 +112,17 @@ def sweep(
         if parquet_file is not None:
             require_writable(parquet_file)
         new = [complete[place] for place in table.missing(complete)]
-        rows: Iterator[tuple[dict[str, Any], str]] = map(analysed, new)
+        # Windows of points that share what is known of their blades. Workers have something to do
+        # only if the lattice's are small.
+        small = n_workers > 1 and not request.model.loads.blade_element
+        size = _WINDOW_OF_WORKERS if small else _WINDOW
+        windows = [new[first : first + size] for first in range(0, len(new), size)]
+        batches: Iterator[Iterable[tuple[dict[str, Any], str]]] = map(analysed, windows)
         if n_workers > 1:
             workers = stack.enter_context(start_workers(n_workers))
-            rows = stack.enter_context(closing(results_in_order(workers, analysed, new)))
+            listed = partial(_listed, analysed)
+            batches = stack.enter_context(closing(results_in_order(workers, listed, windows)))
+        rows = chain.from_iterable(batches)
         for point in tqdm(new, desc="sweep", unit="point", disable=None):
             values, reason = next(rows)
             table.add(point, {name: values[name] for name in results if name in values}, reason)
@@ -153,7 +166,7 @@ def _complete_points(
     propeller: Propeller, points: Iterable[Point], request: Request
 ) -> list[dict[str, Any]]:
     """Points with a value in every column that tells them from others."""
-    same = _same_columns(request)
+    same = _same_columns(propeller, request)
     complete = [_complete(propeller, point) | same for point in points]
     drives = {"rpm" if "rpm" in point else "thrust_required" for point in complete}
     if len(drives) != 1:
@@ -172,14 +185,16 @@ def _columns(
     return point_columns, results
 
 
-def _same_columns(request: Request) -> dict[str, Any]:
+def _same_columns(propeller: Propeller, request: Request) -> dict[str, Any]:
     """Columns of what is asked of all points alike."""
-    loads, broadband = request.model.loads, request.model.noise.broadband
+    model = request.model.completed(propeller.transition, propeller.tip, propeller.trip)
+    loads, broadband = model.loads, model.noise.broadband
+    trip = "none" if broadband is None else broadband.trip
     return {
         "viscous": loads.viscous,
         "stall_delay": loads.stall_delay,
         "broadband": broadband is not None,
-        "trip": "none" if broadband is None else broadband.trip,
+        "trip": " ".join(trip) if isinstance(trip, tuple) else trip,
         "surroundings": str(request.listening.surroundings),
         "settings": " ".join(_other_settings(request)) or "default",
     }
@@ -233,11 +248,22 @@ def _complete(propeller: Propeller, point: Mapping[str, float]) -> dict[str, Any
 
 
 def _analysed(
-    propeller: Propeller, asked: Asked, suffixes: Sequence[str], point: Mapping[str, Any]
-) -> tuple[dict[str, Any], str]:
-    """Results by column at a point, or none and the reason."""
-    from propmdao.analysis.single_point import analyze  # slow to import
+    propeller: Propeller, asked: Asked, suffixes: Sequence[str], points: Sequence[Mapping[str, Any]]
+) -> Iterator[tuple[dict[str, Any], str]]:
+    """Results by column at each of some points, or none and the reason, as they come."""
+    from propmdao.analysis.sweeping.batches import analyze_each  # slow to import
 
+    outcomes = analyze_each(propeller, [_asked_at(propeller, asked, point) for point in points])
+    return (_row(outcome.result, outcome.warnings, suffixes) for outcome in outcomes)
+
+
+def _listed(function: Callable[[Argument], Iterable[Result]], argument: Argument) -> list[Result]:
+    """All results of a function that gives them one by one, for another process."""
+    return list(function(argument))
+
+
+def _asked_at(propeller: Propeller, asked: Asked, point: Mapping[str, Any]) -> Asked:
+    """What is asked of all points, and the values of one."""
     of_point = {
         quantity.name: point[column] for column, quantity in VARIABLES.items() if column in point
     }
@@ -245,14 +271,16 @@ def _analysed(
     for name, described in (("diameter", propeller.diameter), ("n_blades", propeller.n_blades)):
         if of_point[name] == described:
             del of_point[name]
-    try:
-        with warnings.catch_warnings(record=True) as caught:
-            warnings.simplefilter("always")
-            results = analyze(propeller, **{**asked, **of_point}).to_dict()
-    except ValueError as error:
-        return {}, str(error)
-    except Exception as error:  # a survey of thousands of points does not end at one of them
-        return {}, f"{type(error).__name__}: {error}"
+    return cast(Asked, {**asked, **of_point})
+
+
+def _row(result: Any, said: Sequence[str], suffixes: Sequence[str]) -> tuple[dict[str, Any], str]:
+    """Results by column of an analysis, or none and the reason."""
+    if isinstance(result, ValueError):
+        return {}, str(result)
+    if isinstance(result, Exception):
+        return {}, f"{type(result).__name__}: {result}"
+    results = result.to_dict()
     levels = {
         name + suffix: observer[name]
         for observer, suffix in zip(results.pop("observers"), suffixes, strict=True)
@@ -261,7 +289,6 @@ def _analysed(
     }
     for name, vector in HUB_LOADS.items():
         results |= zip(vector.columns, results.pop(name), strict=True)
-    said = dict.fromkeys(" ".join(str(warning.message).split()) for warning in caught)
     results[_WARNINGS] = "; ".join(said)
     unconverged = "" if results["converged"] else "the solution has not converged"
     return results | levels, results.get("failure") or unconverged

@@ -19,11 +19,13 @@ from propmdao.acoustics.kinematics.reception import Observers, require_outside, 
 from propmdao.acoustics.signals import PressureHistory
 from propmdao.acoustics.sources.advanced_time import source_history
 from propmdao.acoustics.sources.rotors import segments, silence
+from propmdao.analysis.wopwop.broadband_sources import broadband_noise, distances
 from propmdao.formats.wopwop.binary import WopwopFileError
-from propmdao.formats.wopwop.cases import Case, Container, ObserverGrid, read_cases
+from propmdao.formats.wopwop.cases import read_cases
 from propmdao.formats.wopwop.geometry_file import read_geometry
 from propmdao.formats.wopwop.loading_file import LoadingFile, read_loading
-from propmdao.formats.wopwop.pressure_file import PressureHistories
+from propmdao.formats.wopwop.namelists.case_records import Case, Container, ObserverGrid, Wanted
+from propmdao.formats.wopwop.outputs.pressure_file import PressureHistories
 from propmdao.formats.wopwop.sources import (
     is_line,
     loading_sources,
@@ -50,11 +52,27 @@ class CaseResult:
         Title of the observers.
     pressure : PressureHistories
         Pressure at each of them.
+    listening : ObserverGrid
+        How they listen: segments of the record, filters, absorption.
+    wanted : Wanted
+        Results that the case asks for.
+    air : Air
+        The air.
+    distance : (n_observers, n_segments) array
+        Way of the sound that is heard in the middle of a segment, from the sources' middle [m].
+    broadband : dict of (n_observers, n_segments, n_bands) arrays
+        Mean squares of the parts of the broadband noise in the third octaves of
+        `broadband_sources.BANDS_HZ`, without absorption [Pa^2]; empty where there is none.
     """
 
     case: str
     observers: str
     pressure: PressureHistories
+    listening: ObserverGrid
+    wanted: Wanted
+    air: Air
+    distance: NDArray[np.float64]
+    broadband: dict[str, NDArray[np.float64]]
 
 
 def run_case(folder: str | Path) -> list[CaseResult]:
@@ -124,7 +142,16 @@ def _run(case: Case, progress: tqdm) -> list[CaseResult]:
                 histories[number].parts[name][row] = own
         progress.update(len(set(batch)))
     return [
-        CaseResult(case.name, grid.title, _pressure(case, grid, history))
+        CaseResult(
+            case.name,
+            grid.title,
+            _pressure(case, grid, history),
+            grid,
+            case.wanted,
+            case.air,
+            distances(case, grid),
+            broadband_noise(case, grid),
+        )
         for grid, history in zip(case.observers, histories, strict=True)
     ]
 
@@ -216,7 +243,7 @@ def _patch_history(
     """Thickness noise of a zone if it is a surface, loading noise if it has loads."""
     _, container, zone, surface, load, file = patch
     motion, offset = container.motion, container.key_offset
-    air = Air(density=case.density, sound_speed=case.sound_speed)
+    sound_speed = float(case.air.sound_speed)
     points = source_points(zone)
     changing = any(q is not None and q.keys is not None for q in (zone, load))
     turned = file is not None and file.frame == 1
@@ -224,7 +251,7 @@ def _patch_history(
     for part in segments(times.size, zone.values[0, 0].size if changing or turned else 0):
         t = times[part]
         multiple = max(128, t.size // 8)
-        tau = source_times(motion, points, observers, t, case.sound_speed, container.step, multiple)
+        tau = source_times(motion, points, observers, t, sound_speed, container.step, multiple)
         sources = {}
         if surface is not None:
             sources["thickness"] = thickness_sources(surface, tau, offset)
@@ -232,7 +259,7 @@ def _patch_history(
             sources["loading"] = loading_sources(zone, load, file, tau, motion, offset)
         for name, moving in sources.items():
             history.parts[name][:, part] = source_history(
-                name, moving, motion, tau, observers, t, air
+                name, moving, motion, tau, observers, t, case.air
             )
     return history
 

@@ -19,6 +19,12 @@ from propmdao.commands.output.output_files import (
     require_output_folder,
     save_figures,
 )
+from propmdao.commands.output.report_file import (
+    add_report,
+    origin_of,
+    require_report,
+    write_report,
+)
 from propmdao.commands.output.warning_lines import warning_lines
 from propmdao.formats.endings import PROPELLER_READERS, described
 from propmdao.runtime.terminal import print_line
@@ -44,6 +50,7 @@ examples:
   propmdao compare apcsf_11x4.7 apcsf_10x4.7 --thrust 3
   propmdao compare apcsf_11x4.7 my_blade.toml --thrust 3 --speed 8 --arc 1.905 -75:75:15 --broadband
   propmdao compare old.toml new.toml --thrust 6 --arc 2 -90:90:10 --broadband --results old_and_new
+  propmdao compare old.toml new.toml --thrust 6 --arc 2 -90:90:10 --broadband --report page.html
 
 Levels are in dB re 20 uPa, rms. SI units throughout. Exit status: 0, or 2 with one line on stderr.
 """
@@ -106,6 +113,7 @@ def add_compare(commands: argparse._SubParsersAction[Any]) -> None:
         metavar="FOLDER",
         help="write table, figures, sounds and record.json",
     )
+    add_report(command, "numbers, players for the sounds, figures, inputs and versions")
     command.add_argument(
         "--seconds", type=number, metavar="S", help="length of the sounds [s], default 5"
     )
@@ -122,11 +130,11 @@ def _compare(options: argparse.Namespace) -> None:
     asked = asked_of(options) | air_of(options)
     Request.of({"listening": listening}, **asked)
     from propmdao.analysis.single_point import analyze
-    from propmdao.commands import report
     from propmdao.commands.designs.compared_analyses import ComparedAnalyses
+    from propmdao.figures.contents.doubts import TONES_ONLY
     from propmdao.formats.propellers import load_propeller
 
-    with warning_lines("compare"):
+    with warning_lines("compare") as warned:
         loaded = [load_propeller(name) for name in options.propellers]
         propellers = dict(zip(_labels(options.propellers, loaded), loaded, strict=True))
         analyses = {
@@ -136,6 +144,12 @@ def _compare(options: argparse.Namespace) -> None:
     chosen = None if options.observer is None else int(options.observer) - 1
     compared = ComparedAnalyses.beside(analyses, chosen)
     results = list(compared.results.values())
+    if options.report is not None:
+        from propmdao.figures.pages.comparison_page import comparison_page
+
+        origin = origin_of(options, warned)
+        page = comparison_page(analyses, compared.observer, origin, _seconds(options))
+        write_report(options, page)
     if options.json:
         files = _write(options, propellers, compared)
         print_json({"results": results, "files": files})
@@ -144,7 +158,7 @@ def _compare(options: argparse.Namespace) -> None:
     if compared.observer is None:
         print_line("No observers: --arc RADIUS ELEVATION... adds their noise.")
     elif results[0]["model"]["noise"]["broadband"] is None:
-        print_line(report.TONES_ONLY)
+        print_line(TONES_ONLY)
     files = _write(options, propellers, compared)
     if files:
         print_line(" ".join(["Files:", *files]))
@@ -158,16 +172,19 @@ def _check(options: argparse.Namespace, listening: Listening) -> None:
     if options.observer is not None and not 1 <= options.observer <= n_observers:
         there = f"must be within 1 ... {n_observers}" if n_observers else "needs observers"
         raise ValueError(f"--observer {there}; it is {options.observer}")
-    if options.seconds is not None and options.results is None:
-        raise ValueError("--seconds is of the sounds in a folder: add --results FOLDER")
-    if options.results is None:
-        return
-    require_output_folder("--results", options.results)
-    if n_observers:
+    if options.seconds is not None and options.results is None and options.report is None:
+        raise ValueError(
+            "--seconds is of the sounds in a folder or a page: add --results FOLDER or --report"
+            " FILE.html"
+        )
+    if n_observers and (options.results is not None or options.report is not None):
         from propmdao.analysis.sounds import require_sound
 
-        require_sound(n_observers, _seconds(options))
-    require_matplotlib("--results")
+        require_sound(1 if options.results is None else n_observers, _seconds(options))
+    require_report(options)
+    if options.results is not None:
+        require_output_folder("--results", options.results)
+        require_matplotlib("--results")
 
 
 def _seconds(options: argparse.Namespace) -> float:
@@ -189,9 +206,10 @@ def _labels(typed: list[str], propellers: list[Propeller]) -> list[str]:
 def _write(
     options: argparse.Namespace, propellers: dict[str, Propeller], compared: ComparedAnalyses
 ) -> list[str]:
-    """Write the folder of results; the files in it."""
+    """Write the folder of results; the files in it, and the page that is written already."""
+    page = [] if options.report is None else [str(options.report)]
     if options.results is None:
-        return []
+        return page
     from propmdao.commands.output.results_folder import write_record
     from propmdao.figures.designs.of_comparison import compared_figures
 
@@ -202,4 +220,4 @@ def _write(
     files += save_figures(folder, compared_figures(compared.analyses, compared.observer))
     if compared.observer is not None:
         files += compared.write_sounds(folder, _seconds(options))
-    return files
+    return [*files, *page]

@@ -14,7 +14,15 @@ if TYPE_CHECKING:
     from propmdao.records.states import OperatingPoint
 
 #: What may be asked of the model.
-ASKED_OPTIONS = ("n_crit", "trip_upper", "trip_lower", "stall_delay", "trip", "layers")
+ASKED_OPTIONS = (
+    "blade_element",
+    "n_crit",
+    "trip_upper",
+    "trip_lower",
+    "stall_delay",
+    "trip",
+    "layers",
+)
 _THICKNESS = "thickness"
 
 

@@ -17,6 +17,7 @@ from propmdao.commands.designs.design_search import TOLERANCE
 from propmdao.commands.observer_options import listening_of
 from propmdao.commands.output.output_files import save_figures, write_csv
 from propmdao.commands.output.progress import progress
+from propmdao.commands.output.report_file import origin_of, write_report
 from propmdao.commands.output.results_folder import file_name
 from propmdao.commands.output.warning_lines import warning_lines
 from propmdao.components.drivers.search_history import SearchHistory
@@ -70,19 +71,23 @@ def write_results(
     if len(listening.observers):  # a blade that is quieter in tones may be louder in all
         asked["broadband"] = True
     results: list[dict[str, Any]] = []
+    compared_at: list[ComparedAnalyses] = []
+    warned_of: list[str] = []
     for number, point in enumerate(points, start=1):
         suffix = "" if len(points) == 1 else f"_at_{number}"
         where = f"{point.thrust:g} N, {point.speed:g} m/s"
         if point.incidence_deg:
             where += f", {point.incidence_deg:g} deg"
         progress(f"analysing both blades at {where}")
-        with warning_lines("optimise"):
+        with warning_lines("optimise") as warned:
             analyses = {
                 blade.name: analyze(blade, point, listening=listening, **asked)
                 for blade in (described, designed)
             }
         compared = ComparedAnalyses.beside(analyses)
         results += compared.results.values()
+        compared_at.append(compared)
+        warned_of += warned
         if len(points) > 1:
             print_line(f"At {where}:")
         compared.print_table()
@@ -93,8 +98,30 @@ def write_results(
         if 0 < len(listening.observers) <= MAX_CHANNELS:
             files += compared.write_sounds(folder, 5.0, suffix)
     files += save_figures(folder, figures)
+    if options.report is not None:
+        _write_page(options, compared_at, history, warned_of)
+        files.append(str(options.report))
     print_line(" ".join(["Files:", *files]))
     return {"results": results}
+
+
+def _write_page(
+    options: argparse.Namespace,
+    compared_at: Sequence[ComparedAnalyses],
+    history: SearchHistory,
+    warned_of: Sequence[str],
+) -> None:
+    """Write the page of the design."""
+    from propmdao.figures.pages.design_page import design_page, search_section
+
+    label = RESPONSES[options.minimise].label
+    page = design_page(
+        [compared.analyses for compared in compared_at],
+        [compared.observer for compared in compared_at],
+        search_section(history.objective, history.violation, label, TOLERANCE),
+        origin_of(options, [*dict.fromkeys(warned_of)]),
+    )
+    write_report(options, page)
 
 
 def _write_history(path: Path, history: SearchHistory, label: str) -> None:

@@ -22,6 +22,7 @@ from propmdao.commands.observer_options import listening_of
 from propmdao.commands.options import add_command
 from propmdao.commands.output.output_files import require_matplotlib, require_output_folder
 from propmdao.commands.output.progress import progress
+from propmdao.commands.output.report_file import add_report, require_report
 from propmdao.commands.output.results_folder import RECORD, write_record
 from propmdao.commands.output.warning_lines import warning_lines
 from propmdao.propeller.design_choices import RESPONSES
@@ -52,6 +53,7 @@ examples:
       --tip-mach-max 0.4 --chord 0.8:1.3 --results efficient
   propmdao optimise apcmr_8x4.5 --thrust 2.9 --speed 10 --incidence 70 --also-at 2.5 0 \
       --arc 1.9 -60 -30 --results drone
+  propmdao optimise apcsf_11x4.7 --thrust 2 --arc 1.9 -75:-15:15 --results quiet --report quiet.html
 
 Exit status: 0, or 2 with one line on stderr, also when no design meets the limits.
 """
@@ -75,6 +77,10 @@ def add_optimise(commands: argparse._SubParsersAction[Any]) -> None:
     )
     add_design_options(command)
     add_search_options(command)
+    add_report(
+        command,
+        "both blades beside each other, players for the sounds, the search, inputs and versions",
+    )
 
 
 def _optimise(options: argparse.Namespace) -> None:
@@ -85,6 +91,7 @@ def _optimise(options: argparse.Namespace) -> None:
     folder: Path = options.results
     require_output_folder("--results", folder)
     require_matplotlib("--results")
+    require_report(options)
     # OpenMDAO and JAX take seconds to import, and OpenMDAO warns of itself.
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")

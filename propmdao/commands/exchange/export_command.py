@@ -22,19 +22,23 @@ from propmdao.runtime.terminal import print_line
 if TYPE_CHECKING:
     from propmdao.propeller.description import Propeller
 
-_FILES = "\n".join(f"  {ending:<5}  {form.contents}" for ending, form in PROPELLER_WRITERS.items())
+_FILES = "\n".join(f"  {ending:<10}  {form.contents}" for ending, form in PROPELLER_WRITERS.items())
+#: Options without which some files cannot be written, and what they are of.
+_NEEDED = {"section": "section", "reynolds": "Reynolds number"}
 DESCRIPTION = f"""\
 A propeller in a file that other programs read. The ending says which:
 
 {_FILES}
-  other  folder of a PSU-WOPWOP case: blade, loads at --rpm or --thrust, observers
+  other       folder of a PSU-WOPWOP case: blade, loads at --rpm or --thrust, observers
 """
 
 EXAMPLES = """\
 examples:
   propmdao export apcsf_11x4.7 --to blades.stl --units mm
+  propmdao export apcsf_11x4.7 --to propeller.step --hub 30 10
   propmdao export apcsf_11x4.7 --to my_blade.toml
   propmdao export apcsf_11x4.7 --section 0.75 --to section_75.dat
+  propmdao export apcsf_11x4.7 --section 0.75 --reynolds 1e5 --to polar_75.txt
   propmdao export apcsf_11x4.7 --rpm 4200 --speed 8 --arc 1.905 -45 0 --to my_case
 
 Axes: z toward thrust, blade 1 along x, rotation from x to y. Exit status: 0, or 2 with one line on
@@ -63,10 +67,20 @@ def add_export(commands: argparse._SubParsersAction[Any]) -> None:
         "--to", type=Path, required=True, metavar="FILE", help="what is written or replaced"
     )
     command.add_argument(
-        "--section", type=number, metavar="R_OVER_R", help="r/R of the section in a .dat file"
+        "--section", type=number, metavar="R_OVER_R", help="r/R of the section in a .dat or .txt"
+    )
+    command.add_argument(
+        "--reynolds", type=number, metavar="RE", help="Reynolds number of the polar in a .txt file"
     )
     command.add_argument(
         "--units", choices=STL_UNITS, help="unit of length of an .stl file, m by default"
+    )
+    command.add_argument(
+        "--hub",
+        type=number,
+        nargs=2,
+        metavar=("DIAMETER", "HEIGHT"),
+        help="hub of a .step file [mm], fused with the blades",
     )
     names = ("rpm", "thrust", "speed", "incidence_deg", "density", "twist_offset_deg", "viscous")
     add_asked(command, names, required=False)
@@ -82,13 +96,16 @@ def _export(options: argparse.Namespace) -> None:
             f"--to {path}: there is no export to {ending!r}; a file ends in"
             f" {', '.join(PROPELLER_WRITERS)}, a PSU-WOPWOP case (--rpm, --thrust) in no such"
         )
-    if (options.section is not None) != (writer is not None and writer.of_section):
-        sections = " or ".join(e for e, form in PROPELLER_WRITERS.items() if form.of_section)
-        raise ValueError(
-            f"a {sections} file is of one section, and only that has --section R_OVER_R"
-        )
-    if options.units is not None and (writer is None or not writer.in_units):
-        raise ValueError("--units is of an .stl file: all else is in metres")
+    takes = () if writer is None else writer.takes
+    for name, what in _NEEDED.items():
+        if (getattr(options, name) is not None) != (name in takes):
+            files = " or ".join(e for e, form in PROPELLER_WRITERS.items() if name in form.takes)
+            raise ValueError(f"a {files} file is of one {what}, and only that has --{name}")
+    if options.units is not None and "units" not in takes:
+        files = " or ".join(e for e, form in PROPELLER_WRITERS.items() if "units" in form.takes)
+        raise ValueError(f"--units is of an {files} file: of all else the unit is settled")
+    if options.hub is not None and "hub" not in takes:
+        raise ValueError("--hub is of a .step file: nothing else has one")
     if writer is not None and driven:
         raise ValueError(f"a {ending} file holds no loads: --rpm and --thrust do not go along")
     if writer is None and not driven:
@@ -108,10 +125,11 @@ def _export(options: argparse.Namespace) -> None:
         return
     propeller = Change(options.twist_offset_deg).applied_to(propeller)
     unit = options.units or "m"
-    third = [options.section] if writer.of_section else [unit] if writer.in_units else []
-    n_items = writer(path, propeller, *third)
-    lengths = f", {STL_UNITS[unit][0]}" if writer.in_units else ""
-    print_line(f"{path}: {propeller.name}, {n_items} {writer.items}{lengths}")
+    arguments = {**vars(options), "units": unit}
+    n_items = writer(path, propeller, *[arguments[name] for name in takes])
+    lengths = f", {STL_UNITS[unit][0]}" if "units" in takes else ""
+    items = writer.items.removesuffix("s") if n_items == 1 else writer.items
+    print_line(f"{path}: {propeller.name}, {n_items} {items}{lengths}")
 
 
 def _write_case(options: argparse.Namespace, propeller: Propeller) -> None:

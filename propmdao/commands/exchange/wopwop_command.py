@@ -11,8 +11,12 @@ from propmdao.commands.options import add_command
 from propmdao.commands.output.json_output import print_json
 from propmdao.commands.output.output_files import require_output, write_csv
 from propmdao.commands.output.warning_lines import warning_lines
+from propmdao.runtime.output_files import require_folder
 
 if TYPE_CHECKING:
+    import numpy as np
+    import numpy.typing as npt
+
     from propmdao.analysis.wopwop.foreign_case import CaseResult
 
 DESCRIPTION = """\
@@ -20,8 +24,10 @@ Run the cases of a PSU-WOPWOP folder and print the levels that its observers hea
 
 Reads cases.nam, the case files it names and their geometry and loading files (structured or not,
 constant, periodic or aperiodic); computes thickness and loading noise by Formulation 1A in the time
-domain. Levels are in dB re 20 uPa of the whole record, without its mean and without a window; tones
-are the peaks of its spectrum. Keys without effect here are named on stderr.
+domain, broadband noise of blade sections (BPMNoiseFlag) and of rotors by Pegg's method. Levels are
+in dB re 20 uPa, without the mean, over the record or its segments, with window and absorption as
+the case has them; tones are the peaks of the spectrum. Keys without effect are named on stderr; a
+case that asks for what is not done is refused.
 """
 
 EXAMPLES = """\
@@ -29,11 +35,22 @@ examples:
   propmdao wopwop my_case
   propmdao wopwop my_case --json
   propmdao wopwop my_case --out pressure.csv
+  propmdao wopwop my_case --levels results
 
 Exit status: 0, or 2 with one line on stderr about what cannot be read or computed.
 """
 
 _PEAKS, _PEAK_RANGE_DB = 10, 60.0
+_COLUMNS = {
+    "oaspl_thickness_db": "thick-\nness\ndB",
+    "oaspl_loading_db": "load-\ning\ndB",
+    "oaspl_db": "OASPL\ndB",
+    "oaspl_dba": "tones\ndBA",
+    "oaspl_broadband_dba": "broad-\nband\ndBA",
+    "oaspl_total_dba": "total\ndBA",
+    "sel_dba": "SEL\ndBA",
+    "epnl": "EPNL\nEPNdB",
+}
 
 
 def add_wopwop(commands: argparse._SubParsersAction[Any]) -> None:
@@ -55,6 +72,12 @@ def add_wopwop(commands: argparse._SubParsersAction[Any]) -> None:
         metavar="FILE.csv",
         help="write the pressure of every observer over time [s, m, Pa]",
     )
+    command.add_argument(
+        "--levels",
+        type=Path,
+        metavar="FOLDER",
+        help="write spectra and overall levels that the case asks for, as PSU-WOPWOP writes them",
+    )
 
 
 def levels(results: Sequence[CaseResult]) -> list[dict[str, Any]]:
@@ -68,62 +91,100 @@ def levels(results: Sequence[CaseResult]) -> list[dict[str, Any]]:
     Returns
     -------
     list of dict
-        One for each group of observers: case, title, n_times, duration [s], bin_width_hz,
-        observers; each of these has position at the start [m], oaspl_thickness_db,
+        One for each group of observers: case, title, n_times, duration [s], n_segments,
+        bin_width_hz, observers; each of these has position at the start [m], oaspl_thickness_db,
         oaspl_loading_db, oaspl_db, oaspl_dba and peaks: the ten highest of the spectrum within
-        60 dB, each frequency_hz, spl_thickness_db, spl_loading_db, spl_db.
+        60 dB, each frequency_hz, spl_thickness_db, spl_loading_db, spl_db. Levels are of the mean
+        square over the segments. With broadband noise there are oaspl_broadband_db and _dba,
+        oaspl_total_db and _dba, and where the case asks for it third_octave (each frequency_hz,
+        spl_db), sel_dba, pnltm and epnl.
+
+    Raises
+    ------
+    ValueError
+        If EPNL is asked for of a record that does not begin and end 10 dB below its maximum.
     """
     return [_group(result) for result in results]
 
 
 def _group(result: CaseResult) -> dict[str, Any]:
     import numpy as np
-    from scipy.signal import find_peaks
 
     from propmdao.acoustics.levels.decibels import level_db
-    from propmdao.acoustics.levels.spectrum import narrowband
-    from propmdao.acoustics.levels.weighting import level_dba
+    from propmdao.analysis.wopwop.case_levels import ALL, BROADBAND, TONES, case_levels
 
-    pressure = result.pressure
-    n = pressure.time.shape[1]
-    rate = float((n - 1) / np.ptp(pressure.time[0]))
-    parts = {"thickness_": pressure.thickness, "loading_": pressure.loading, "": pressure.total}
-    power = {}
-    for part, history in parts.items():
-        frequency, power[part] = narrowband(history, rate, rate / n, "boxcar")
-    spectra = {part: np.asarray(level_db(q)) for part, q in power.items()}
-    overall = {part: np.asarray(level_db(q.sum(axis=-1))) for part, q in power.items()}
-    weighted = np.asarray(level_dba(frequency, power[""]))
-    observers = []
-    for i, position in enumerate(pressure.position[:, 0]):
-        level = spectra[""][i]
-        # The first and the last bin may be peaks, too.
-        edged = np.pad(level, 1, constant_values=-np.inf)
-        peak_bins = find_peaks(edged, height=level.max() - _PEAK_RANGE_DB)[0] - 1
-        loudest = np.sort(peak_bins[np.argsort(level[peak_bins])[-_PEAKS:]])
-        peaks = [
-            {"frequency_hz": float(frequency[k])}
-            | {f"spl_{part}db": float(spectrum[i, k]) for part, spectrum in spectra.items()}
-            for k in loudest
-        ]
-        observers.append(
-            {"observer": i + 1, "position": [float(x) for x in position]}
-            | {f"oaspl_{part}db": float(value[i]) for part, value in overall.items()}
-            | {"oaspl_dba": float(weighted[i]), "peaks": peaks}
+    segments, n = case_levels(result), result.pressure.time.shape[1]
+    frequency = segments.frequency_hz
+    keys = dict(zip(TONES, ("thickness_", "loading_", ""), strict=True))
+    spectra = {
+        key: np.asarray(level_db(segments.narrowband[part].mean(axis=1)))
+        for part, key in keys.items()
+    }
+    sums = keys | ({BROADBAND: "broadband_", ALL: "total_"} if result.broadband else {})
+    overall = {
+        f"oaspl_{key}db": np.asarray(level_db(segments.overall(part).mean(axis=1)))
+        for part, key in sums.items()
+    }
+    weighted = {key: part for part, key in sums.items() if key not in ("thickness_", "loading_")}
+    overall |= {
+        f"oaspl_{key}dba": 10.0
+        * np.log10(np.mean(10.0 ** (0.1 * segments.overall_dba(part)), axis=1))
+        for key, part in weighted.items()
+    }
+    if result.wanted.exposure:
+        overall["sel_dba"] = segments.exposure_db()
+    observers: list[dict[str, Any]] = []
+    for i, position in enumerate(result.pressure.position[:, 0]):
+        observer: dict[str, Any] = {"observer": i + 1, "position": [float(x) for x in position]}
+        observer |= {name: float(value[i]) for name, value in overall.items()}
+        if result.wanted.effective or result.wanted.perceived:
+            perceived = segments.perceived(i)
+            observer |= {"pnltm": perceived.pnltm, "epnl": perceived.epnl}
+        if result.listening.third_octaves:
+            bands = np.asarray(level_db(segments.bands[ALL][i].mean(axis=0)))
+            observer["third_octave"] = [
+                {"frequency_hz": float(center), "spl_db": float(level)}
+                for center, level in zip(segments.center_hz, bands, strict=True)
+            ]
+        observer["peaks"] = _peaks(
+            frequency, {key: spectrum[i] for key, spectrum in spectra.items()}
         )
+        observers.append(observer)
     return {
         "case": result.case,
         "title": result.observers,
         "n_times": n,
-        "duration": n / rate,
-        "bin_width_hz": rate / n,
+        "duration": n * float(np.ptp(result.pressure.time[0])) / (n - 1),
+        "n_segments": len(segments.time),
+        "bin_width_hz": float(frequency[0]),
         "observers": observers,
     }
+
+
+def _peaks(
+    frequency: npt.NDArray[np.float64], spectra: dict[str, npt.NDArray[np.float64]]
+) -> list[dict[str, float]]:
+    """The highest peaks of a spectrum, by frequency."""
+    import numpy as np
+    from scipy.signal import find_peaks
+
+    level = spectra[""]
+    # The first and the last bin may be peaks, too.
+    edged = np.pad(level, 1, constant_values=-np.inf)
+    peak_bins = find_peaks(edged, height=level.max() - _PEAK_RANGE_DB)[0] - 1
+    loudest = np.sort(peak_bins[np.argsort(level[peak_bins])[-_PEAKS:]])
+    return [
+        {"frequency_hz": float(frequency[k])}
+        | {f"spl_{key}db": float(spectrum[k]) for key, spectrum in spectra.items()}
+        for k in loudest
+    ]
 
 
 def _wopwop(options: argparse.Namespace) -> None:
     if options.out is not None:
         require_output("--out", options.out)
+    if options.levels is not None:
+        require_folder(options.levels)
     # Slow to import, so only once it is wanted.
     from propmdao.analysis.wopwop.foreign_case import run_case
 
@@ -131,6 +192,10 @@ def _wopwop(options: argparse.Namespace) -> None:
         results = run_case(options.folder)
     if options.out is not None:
         write_pressure_csv(options.out, results)
+    if options.levels is not None:
+        from propmdao.analysis.wopwop.level_output import write_levels
+
+        write_levels(options.levels, results)
     groups = levels(results)
     if options.json:
         print_json(groups)
@@ -191,17 +256,14 @@ def _print(groups: Sequence[dict[str, Any]]) -> None:
             ),
             highlight=False,
         )
-        overall = table(
-            "observer", "x\nm", "y\nm", "z\nm", "thickness\ndB", "loading\ndB", "OASPL\ndB",
-            "tones\ndBA", "loudest\nHz",
-        )  # fmt: skip
-        keys = ("oaspl_thickness_db", "oaspl_loading_db", "oaspl_db", "oaspl_dba")
+        columns = {key: head for key, head in _COLUMNS.items() if key in observers[0]}
+        overall = table("obs.", "x\nm", "y\nm", "z\nm", *columns.values(), "loudest\nHz")
         for observer in observers:
             loudest = max(observer["peaks"], key=_loudness, default=None)
             overall.add_row(
                 str(observer["observer"]),
                 *map(_metres, observer["position"]),
-                *(level_cell(observer[key]) for key in keys),
+                *(level_cell(observer[key]) for key in columns),
                 "-" if loudest is None else f"{loudest['frequency_hz']:.1f}",
             )
         console.print(overall)

@@ -42,8 +42,8 @@ def add_list(commands: argparse._SubParsersAction[Any]) -> None:
         commands,
         "list",
         _list,
-        "the propellers that ship with propmdao",
-        "The propellers that ship with propmdao, by the names that analyze takes.",
+        "the propellers and motors that ship with propmdao",
+        "The propellers and motors that ship with propmdao, by the names that analyze takes.",
         "examples:\n  propmdao list\n  propmdao list --json",
     )
     command.add_argument("--json", action="store_true", help="print JSON instead of a table")
@@ -78,8 +78,9 @@ def _list(options: argparse.Namespace) -> None:
         print_json([{key: getattr(propeller, key) for key in keys} for propeller in propellers])
     else:
         from propmdao.commands.inventory.inventory_report import print_catalog
+        from propmdao.propeller.motors import motors
 
-        print_catalog(propellers)
+        print_catalog(propellers, motors())
 
 
 def _show(options: argparse.Namespace) -> None:
@@ -121,8 +122,8 @@ def _described(propeller: Propeller) -> dict[str, Any]:
 
 
 def _draw(folder: Path, propeller: Propeller) -> list[str]:
-    from propmdao.figures.blades import blade_comparison
     from propmdao.figures.rotor.blade_view import blade_view
+    from propmdao.figures.rotor.blades import blade_comparison
 
     radii = [max(r, float(propeller.r_over_R[0])) for r in (0.3, 0.75, 0.95)]
     title = f"{propeller.name}, {propeller.n_blades} blades, {propeller.diameter:.4g} m"

@@ -29,11 +29,13 @@ Exit status: 0, or 2 with one line on stderr when the analysis does not run.
 EXTRAS = {
     "plots": ("matplotlib",),
     "polars": ("neuralfoil",),
+    "report": ("jinja2", "plotly"),
     "parquet": ("pyarrow",),
     "doe": ("pydoe",),
     "parallel": ("distributed", "mpi4py"),
     "mission": ("dymos",),
     "completion": ("shtab",),
+    "cad": ("OCP",),
 }
 
 

@@ -10,13 +10,15 @@ from propmdao.propeller.description import Propeller
 from propmdao.runtime.terminal import plain_console, print_line, printable
 
 
-def print_catalog(propellers: Iterable[Propeller]) -> None:
-    """Print a table of propellers: name, diameter, number of blades, airfoils.
+def print_catalog(propellers: Iterable[Propeller], motors: Iterable[str]) -> None:
+    """Print a table of propellers: name, diameter, number of blades, airfoils; names of motors.
 
     Parameters
     ----------
     propellers : iterable of Propeller
         One line each.
+    motors : iterable of str
+        Names of the motors.
     """
     table = narrow_table()
     table.add_column("name", no_wrap=True)
@@ -34,6 +36,7 @@ def print_catalog(propellers: Iterable[Propeller]) -> None:
     console = plain_console()
     console.print(table)
     console.print("Where the numbers come from, and what is assumed: propmdao list --json")
+    console.print(f"Motors, for analyze --motor: {', '.join(motors)}", highlight=False)
 
 
 def print_propeller(described: dict[str, Any]) -> None:

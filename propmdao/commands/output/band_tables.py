@@ -8,6 +8,7 @@ from typing import Any
 from rich.console import Console
 from rich.table import Table
 
+from propmdao.analysis.comparisons import flat_values
 from propmdao.commands.output.tables import narrow_table, number_cell
 from propmdao.runtime.terminal import printable
 
@@ -67,23 +68,16 @@ def _band(analysis: dict[str, Any]) -> Table:
         columns.append((effect["changes"][1], effect["changes"][0]))
     table.add_column("band", justify="right")
     columns.append((band["above"], band["below"]))
-    flat = [tuple(None if end is None else _flat(end) for end in ends) for ends in columns]
-    for k, ((label, form, change), value) in enumerate(zip(rows, _flat(numbers), strict=True)):
+    flat = [tuple(None if end is None else flat_values(end) for end in ends) for ends in columns]
+    for k, ((label, form, change), value) in enumerate(
+        zip(rows, flat_values(numbers), strict=True)
+    ):
         cells = (
             "\n".join("-" if end is None else number_cell(end[k], change) for end in ends)
             for ends in flat
         )
         table.add_row(label, number_cell(value, form), *cells)
     return table
-
-
-def _flat(values: dict[str, Any]) -> list[float]:
-    """Numbers of a band's results in one list, those of the observers one after the other."""
-    return [
-        number
-        for value in values.values()
-        for number in (value if isinstance(value, list) else [value])
-    ]
 
 
 def _places(observers: Sequence[dict[str, Any]]) -> list[str]:

@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 import numpy.typing as npt
 
-from propmdao.figures.style import GRID, LINE_STYLES, literal, page
+from propmdao.figures.contents.palette import LINE_STYLES
+from propmdao.figures.style import GRID, literal, page
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

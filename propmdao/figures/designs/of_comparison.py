@@ -7,11 +7,12 @@ from typing import TYPE_CHECKING
 
 from propmdao.acoustics.kinematics.observers import directions
 from propmdao.analysis.results import Analysis
-from propmdao.figures.blades import blade_comparison
+from propmdao.figures.contents.palette import LEVEL, LEVEL_DBA
+from propmdao.figures.contents.sound import analysis_sound, source_levels
+from propmdao.figures.contents.subjects import observer_groups
 from propmdao.figures.designs.spectra_over_each_other import spectra_over_each_other
-from propmdao.figures.of_analysis import analysis_sound, arc_diagram, observer_groups
-from propmdao.figures.sound import source_levels
-from propmdao.figures.style import LEVEL, LEVEL_DBA
+from propmdao.figures.of_analysis import arc_diagram
+from propmdao.figures.rotor.blades import blade_comparison
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -8,15 +8,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 import numpy.typing as npt
 
-from propmdao.figures.style import (
-    GRID,
-    RUN_COLORS,
-    headline,
-    line_colors,
-    line_styles,
-    literal,
-    page,
-)
+from propmdao.figures.contents.palette import RUN_COLORS, line_colors, line_styles
+from propmdao.figures.style import GRID, headline, literal, page
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -11,22 +11,18 @@ from propmdao.acoustics.levels.bands import bands_in_bins
 from propmdao.acoustics.levels.decibels import level_db, spl_db
 from propmdao.acoustics.levels.weighting import a_weighting
 from propmdao.analysis.self_noise import BANDS_HZ
-from propmdao.figures.sound import Sound, band_edges, band_levels, source_levels
-from propmdao.figures.spectra import frequency_axis
-from propmdao.figures.style import (
-    GRID,
+from propmdao.figures.contents.palette import (
     LEVEL,
     LEVEL_DBA,
     LOWEST_LEVEL,
     MARKERS,
     Floats,
-    headline,
     line_colors,
     line_styles,
-    literal,
-    page,
-    say_silent,
 )
+from propmdao.figures.contents.sound import Sound, band_edges, band_levels, source_levels
+from propmdao.figures.spectra import frequency_axis
+from propmdao.figures.style import GRID, headline, literal, page, say_silent
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -5,13 +5,13 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, cast
 
-import jax
 import numpy as np
 import numpy.typing as npt
 
-from propmdao.aerodynamics.solutions.point_sums import strip_loads
 from propmdao.aerodynamics.solutions.result import TiltedLoads
-from propmdao.figures.style import Floats, literal, page
+from propmdao.figures.contents.disk_loads import loads_over_disk
+from propmdao.figures.contents.palette import Floats
+from propmdao.figures.style import literal, page
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -38,14 +38,7 @@ def disk_of_loads(loads: TiltedLoads, title: str = "") -> Figure:
         Thrust per span [N/m] and effective angle of attack [deg] of the blade that stands at each
         azimuth.
     """
-    strips, (nc, ns) = loads.strips, loads.circulation.shape[1:]
-    position, force = loads.point_loads.position, -loads.point_loads.force
-    thrust = jax.vmap(lambda on_blade: strip_loads(position, on_blade, nc, ns)[0])(force)
-    maps = {
-        "thrust of a blade per span, N/m": np.asarray(thrust / strips.width),
-        "effective angle of attack, deg": np.degrees(np.asarray(loads.sections.angle_of_attack)),
-    }
-    return disk_maps(np.asarray(strips.r_over_R), maps, title)
+    return disk_maps(np.asarray(loads.strips.r_over_R), loads_over_disk(loads), title)
 
 
 def disk_maps(r_over_R: npt.ArrayLike, maps: Mapping[str, Floats], title: str = "") -> Figure:

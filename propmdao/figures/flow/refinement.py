@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING
 
 import numpy.typing as npt
 
-from propmdao.figures.style import GRID, LINE_STYLES, RUN_COLORS, headline, literal, page
+from propmdao.figures.contents.palette import LINE_STYLES, RUN_COLORS
+from propmdao.figures.style import GRID, headline, literal, page
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

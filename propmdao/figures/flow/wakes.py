@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import numpy.typing as npt
 
-from propmdao.figures.style import GRID, RUN_COLORS, Floats, headline, literal, page
+from propmdao.figures.contents.palette import RUN_COLORS, Floats
+from propmdao.figures.style import GRID, headline, literal, page
 from propmdao.runtime.output_files import replacing
 
 if TYPE_CHECKING:

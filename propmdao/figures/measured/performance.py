@@ -9,16 +9,8 @@ import numpy as np
 import numpy.typing as npt
 
 from propmdao.analysis.wind_tunnel import Errors, Points
-from propmdao.figures.style import (
-    GRID,
-    LEVEL,
-    LINE_STYLES,
-    RUN_COLORS,
-    literal,
-    page,
-    run_dots,
-    run_line,
-)
+from propmdao.figures.contents.palette import LEVEL, LINE_STYLES, RUN_COLORS
+from propmdao.figures.style import GRID, literal, page, run_dots, run_line
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

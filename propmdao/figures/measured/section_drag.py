@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import numpy.typing as npt
 
-from propmdao.figures.style import GRID, RUN_COLORS, page
+from propmdao.figures.contents.palette import RUN_COLORS
+from propmdao.figures.style import GRID, page
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from propmdao.aerodynamics.sections.polars.family import SectionPolars
 from propmdao.analysis.results import Analysis
-from propmdao.figures.of_analysis import operation
+from propmdao.figures.contents.subjects import operation
 from propmdao.figures.rotor.blade_view import blade_view
 from propmdao.figures.rotor.section_polars import section_polars
 from propmdao.figures.rotor.span_loads import span_loads

@@ -14,7 +14,8 @@ from propmdao.aerodynamics.sections.polars.table import (
     section_curves,
 )
 from propmdao.analysis.results import Analysis
-from propmdao.figures.style import GRID, LINE_STYLES, RUN_COLORS, Floats, headline, page
+from propmdao.figures.contents.palette import LINE_STYLES, RUN_COLORS, Floats
+from propmdao.figures.style import GRID, headline, page
 from propmdao.geometry.blade import Blade, span_interpolation
 
 if TYPE_CHECKING:

@@ -7,7 +7,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from propmdao.analysis.results import Analysis
-from propmdao.figures.style import GRID, Floats, headline, page
+from propmdao.figures.contents.distributions import span_values
+from propmdao.figures.contents.palette import Floats
+from propmdao.figures.style import GRID, headline, page
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -30,23 +32,12 @@ def span_loads(analysis: Analysis, title: str = "") -> Figure:
     Figure
         The figure, a dot for each strip of the lattice.
     """
-    loads, air = analysis.loads, analysis.point.air
-    strips, states = loads.strips, loads.sections
-    reynolds = states.relative_speed * strips.chord / air.kinematic_viscosity
-    # The last ring of a strip has the circulation of the whole section.
-    values = {
-        "lift coefficient": states.lift_coefficient,
-        "angle of attack, deg": np.degrees(np.asarray(states.angle_of_attack)),
-        "drag coefficient": states.drag_coefficient,
-        "Reynolds number, thousands": np.asarray(reynolds) / 1e3,
-        "circulation, m²/s": np.asarray(loads.circulation)[..., -1, :],
-        "thrust over span, N/m": np.asarray(loads.strip_thrust / strips.width),
-    }
+    values = span_values(analysis)
     figure = page(9.5)
     grid: Any = figure.subplots(3, 2, sharex=True)
-    r = np.asarray(strips.r_over_R)
+    r = np.asarray(analysis.loads.strips.r_over_R)
     for axes, (label, value) in zip(grid.ravel(), values.items(), strict=True):
-        _draw(axes, r, np.atleast_2d(np.asarray(value, float)))
+        _draw(axes, r, value)
         axes.set_ylabel(label)
         axes.grid(**GRID)
     for axes in grid[-1]:

@@ -7,56 +7,16 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from propmdao.figures.style import GRID, LINE_STYLES, MARKERS, RUN_COLORS, Floats, headline, page
-from propmdao.records.quantities import VARIABLES
+from propmdao.figures.contents.palette import LINE_STYLES, MARKERS, RUN_COLORS, Floats
+from propmdao.figures.contents.sweeps import OF_USE, SHOWN, column_label
+from propmdao.figures.style import GRID, headline, page
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-#: What is drawn, by column, with its label.
-SHOWN = {"CT": "CT", "CP": "CP", "eta": "efficiency", "figure_of_merit": "figure of merit"}
-#: What a map shows from 0 on: a rotor that brakes is of no use, however much it brakes.
-_OF_USE = ("eta", "figure_of_merit")
 _MOST_LINES = 5  # of values of the second variable that are lines; more are a map
 
 Rows = Sequence[Mapping[str, float]]
-
-
-def varied_columns(points: Sequence[Mapping[str, float]]) -> tuple[str, ...]:
-    """Columns that have more than one value, those with most values first.
-
-    Parameters
-    ----------
-    points : sequence of dict
-        Values of a sweep's variables.
-
-    Returns
-    -------
-    tuple of str
-        Columns of `VARIABLES`, one or two.
-
-    Raises
-    ------
-    ValueError
-        If nothing varies, more than two do, or two are not every combination of their values.
-    """
-    values = {
-        name: {point[name] for point in points if name in point}
-        for name in VARIABLES
-        if any(name in point for point in points)
-    }
-    varied = sorted((n for n in values if len(values[n]) > 1), key=lambda n: -len(values[n]))
-    if len(varied) not in (1, 2):
-        raise ValueError(
-            f"figures of a sweep are over one or two variables; {len(varied)} vary"
-            + (f": {', '.join(varied)}" if varied else "")
-        )
-    if len(varied) == 2 and len(points) != len(values[varied[0]]) * len(values[varied[1]]):
-        raise ValueError(
-            f"figures of a sweep over {varied[0]} and {varied[1]} need every combination of their"
-            " values"
-        )
-    return tuple(varied)
 
 
 def sweep_maps(rows: Rows, columns: Sequence[str], title: str = "") -> Figure:
@@ -86,14 +46,14 @@ def sweep_maps(rows: Rows, columns: Sequence[str], title: str = "") -> Figure:
         if len(others) > _MOST_LINES:
             assert second is not None
             _draw_map(figure, axes, rows, (first, second, name), label)
-            axes.set_ylabel(_label(second))
+            axes.set_ylabel(column_label(second))
             axes.set_title(label, fontsize="medium", loc="left")
             continue
         for k, other in enumerate(others):
             chosen = [row for row in rows if second is None or row[second] == other]
             x = np.array([row[first] for row in chosen])
             order = np.argsort(x)
-            named = "" if other is None or second is None else f"{_label(second)}: {other:g}"
+            named = "" if other is None or second is None else f"{column_label(second)}: {other:g}"
             axes.plot(
                 x[order], np.array([row[name] for row in chosen])[order],
                 color=RUN_COLORS[k], linestyle=LINE_STYLES[(k + 1) % len(LINE_STYLES)],
@@ -102,7 +62,7 @@ def sweep_maps(rows: Rows, columns: Sequence[str], title: str = "") -> Figure:
         axes.set_ylabel(label)
         axes.grid(**GRID)
     for axes in grid[-1]:
-        axes.set_xlabel(_label(first))
+        axes.set_xlabel(column_label(first))
     headline(figure, title)
     if 1 < len(others) <= _MOST_LINES:
         figure.legend(*grid[0, 0].get_legend_handles_labels(), loc="outside lower center", ncols=3)
@@ -116,7 +76,7 @@ def _draw_map(figure: Any, axes: Any, rows: Rows, names: tuple[str, str, str], l
     values: Floats = np.full((y.size, x.size), np.nan)
     for row in rows:
         values[np.searchsorted(y, row[second]), np.searchsorted(x, row[first])] = row[name]
-    if name in _OF_USE:
+    if name in OF_USE:
         values = np.maximum(values, 0.0)
     drawn = np.ma.masked_invalid(values)
     if np.ptp(drawn.compressed()) < 1e-12:  # efficiency in hover
@@ -129,10 +89,3 @@ def _draw_map(figure: Any, axes: Any, rows: Rows, names: tuple[str, str, str], l
         text.set_bbox({"facecolor": "white", "alpha": 0.7, "linewidth": 0.0, "pad": 0.5})
     figure.colorbar(filled, ax=axes, label=label, format="%g")
     axes.plot(*[grid.ravel() for grid in np.meshgrid(x, y)], ".", color="white", markersize=2)
-
-
-def _label(column: str) -> str:
-    """Name of a variable with its unit."""
-    quantity = VARIABLES[column]
-    name = quantity.meaning.split(",")[0]
-    return f"{name}, {quantity.unit}" if quantity.unit else name

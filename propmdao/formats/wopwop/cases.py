@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from propmdao.acoustics.kinematics.motion import Frame, Motion
-from propmdao.formats.wopwop.bases import (
+from propmdao.formats.wopwop.namelists.bases import (
     MOST_OBSERVERS,
     Turning,
     change_of_base,
@@ -20,100 +20,37 @@ from propmdao.formats.wopwop.bases import (
     rotor_azimuth,
     uniform_motion,
 )
+from propmdao.formats.wopwop.namelists.broadband_groups import (
+    BpmNoise,
+    PeggNoise,
+    bpm_noise,
+    pegg_noise_of,
+)
+from propmdao.formats.wopwop.namelists.case_records import (
+    BroadbandContainer,
+    Case,
+    Container,
+    ObserverGrid,
+    Wanted,
+)
 from propmdao.formats.wopwop.namelists.groups import Group, read_namelists
+from propmdao.records.air import Air
 
-# Groups that may follow a container or observer, and what they are about, which is not computed.
-_ELSEWHERE = {
-    "bpmin": "broadband noise of this container",
-    "peggin": "broadband noise of this container",
-    "bwiin": "broadband noise of this container",
-    "rangein": "the frequency range of the spectra",
+# Groups of broadband noise that may follow a container, and the keys that ask for it.
+_METHODS = {"bpmin": "bpmnoiseflag", "peggin": "peggnoiseflag"}
+# Groups of what is not computed.
+_NOT_DONE = {
+    "bwiin": "noise of blades and wakes (&BWIIn) is not computed",
+    "rangein": "levels of frequency ranges (&RangeIn) are not worked out",
 }
-# Air of PSU-WOPWOP 3.4.3 where a case does not give it: kg/m^3, m/s.
+_WINDOWS = {"hanning window": "hann"}
+# Air of PSU-WOPWOP 3.4.3 where a case does not give it: kg/m^3, m/s. What absorbs sound is that of
+# the standard atmosphere, J/(kg K), and as humid as ours.
 _USUAL_AIR = {"rho": 1.225, "c": 342.0}
+_GAS_CONSTANT, _HEAT_RATIO, _HUMIDITY = 287.05287, 1.4, 100.0 * float(Air().relative_humidity)
 # Containers within each other, times of a record, pressures of a case (0.4 GiB for each source) and
 # source times in a record, beyond which a file is damaged rather than a case.
 _DEEPEST, _MOST_TIMES, _MOST_PRESSURES, _MOST_STEPS = 50, 1 << 20, 1 << 24, 1 << 20
-
-
-@dataclass(frozen=True)
-class Container:
-    """A container with its own files, at the end of its chain of frames.
-
-    Attributes
-    ----------
-    title : str
-        Title of the container itself.
-    motion : Motion
-        Changes of base from the ground to the container.
-    geometry : Path
-        Geometry file.
-    loading : Path or None
-        Loading file; a container without one has thickness noise only.
-    key_offset : float
-        Offset of the periodic keys of the files, ``periodicKeyOffset``.
-    step : float or None
-        Step of the source times [s], the container's own or that of the container around it.
-    """
-
-    title: str
-    motion: Motion
-    geometry: Path
-    loading: Path | None
-    key_offset: float
-    step: float | None
-
-
-@dataclass(frozen=True)
-class ObserverGrid:
-    """Observers that listen together.
-
-    Attributes
-    ----------
-    title : str
-        Title of the observers.
-    position : (n, 3) array
-        Positions on the ground at time 0, the first index of the grid fastest [m].
-    velocity : (3,) array
-        Velocity on the ground [m/s].
-    times : (n_times,) array
-        Observer times [s].
-    band_hz : tuple of float
-        High-pass and low-pass frequency [Hz], 0 and infinity if not filtered.
-    """
-
-    title: str
-    position: NDArray[np.float64]
-    velocity: NDArray[np.float64]
-    times: NDArray[np.float64]
-    band_hz: tuple[float, float]
-
-
-@dataclass(frozen=True)
-class Case:
-    """A case of PSU-WOPWOP: its air, sources and observers.
-
-    Attributes
-    ----------
-    name : str
-        Name of the case's namelist file.
-    density, sound_speed : float
-        Density [kg/m^3] and speed of sound [m/s] of the air.
-    thickness, loading : bool
-        True for the kinds of noise that are wanted.
-    containers : tuple of Container
-        Containers that have files.
-    observers : tuple of ObserverGrid
-        All observers.
-    """
-
-    name: str
-    density: float
-    sound_speed: float
-    thickness: bool
-    loading: bool
-    containers: tuple[Container, ...]
-    observers: tuple[ObserverGrid, ...]
 
 
 def read_cases(folder: str | Path) -> list[Case]:
@@ -154,8 +91,17 @@ class _Surrounding(NamedTuple):
 
     motion: Motion = ()
     rotor: Turning | None = None
+    shaft: _Shaft | None = None
     step: float | None = None
     depth: int = 1
+
+
+class _Shaft(NamedTuple):
+    """The innermost base that turns with the rotor: its rate [rad/s], axis and what is around."""
+
+    rate: float
+    axis: NDArray[np.float64]
+    motion: Motion
 
 
 @dataclass
@@ -167,13 +113,16 @@ class _Parser:
     n_observers: int = 0
     n_pressures: int = 0
     longest: float = 0.0
+    is_broadband: bool = False
     containers: list[Container] = field(default_factory=list)
+    broadband: list[BroadbandContainer] = field(default_factory=list)
     chains: dict[str, Motion] = field(default_factory=dict)
 
     def case(self, name: str) -> Case:
         environment = self.take("environmentin")
         thickness, loading = _sources(environment)
-        density, sound_speed = self.air()
+        self.is_broadband = environment.flag("broadbandflag")
+        air = self.air()
         later = [self.observers() for _ in range(environment.count("nbobservercontainers", 1, 1))]
         for _ in range(environment.count("nbsourcecontainers", 1, 1)):
             self.container(_Surrounding())
@@ -186,11 +135,12 @@ class _Parser:
             )
         return Case(
             name,
-            density,
-            sound_speed,
+            air,
             thickness,
             loading,
+            _wanted(environment),
             tuple(self.containers),
+            tuple(self.broadband),
             tuple(make() for make in later),  # only now are the containers known to attach to
         )
 
@@ -203,7 +153,7 @@ class _Parser:
         self.position += 1
         return group
 
-    def air(self) -> tuple[float, float]:
+    def air(self) -> Air:
         air = self.take("environmentconstants")
         for key, usual in _USUAL_AIR.items():
             if key not in air.values:
@@ -214,42 +164,75 @@ class _Parser:
         density, sound_speed = (air.number(key, usual) for key, usual in _USUAL_AIR.items())
         if not (density > 0 and sound_speed > 0):
             raise air.error(f"rho and c must be positive; they are {density:g}, {sound_speed:g}")
-        return density, sound_speed
+        gas, ratio = (
+            air.number(key, usual)
+            for key, usual in (("gasconstant", _GAS_CONSTANT), ("gamma", _HEAT_RATIO))
+        )
+        viscosity = air.number("mu", float(Air().dynamic_viscosity))
+        if "nu" in air.values:
+            viscosity = air.number("nu") * density
+        humidity = air.number("relhumidity", _HUMIDITY)
+        if not (gas > 0 and ratio > 0 and viscosity > 0 and 0.0 <= humidity <= 100.0):
+            raise air.error(
+                "gasConstant, gamma and viscosity must be positive, RelHumidity within 0 ... 100;"
+                f" they are {gas:g}, {ratio:g}, {viscosity:g}, {humidity:g}"
+            )
+        temperature = sound_speed**2 / (ratio * gas)
+        return Air(
+            density, sound_speed, viscosity, temperature, density * gas * temperature,
+            0.01 * humidity,
+        )  # fmt: skip
 
-    def chain(
-        self, owner: Group, key: str, rotor: Turning | None = None
-    ) -> tuple[Motion, Turning | None]:
-        """Return the changes of base that follow a group, and the rotor that they are within."""
+    def chain(self, owner: Group, key: str) -> Motion:
+        """Return the changes of base that follow a group of observers."""
         motion: list[Frame] = []
-        left = owner.count(key, 0)
-        while left or self.next_is_elsewhere():
-            group = self.take("cb", *_ELSEWHERE)
+        for _ in range(owner.count(key, 0)):
+            motion += change_of_base(self.take("cb"), None)
+        self.refuse_not_done(owner)
+        return tuple(motion)
+
+    def chain_of_sources(
+        self, owner: Group, around: _Surrounding
+    ) -> tuple[_Surrounding, dict[str, Group]]:
+        """Return what a container hands on, without its step, and its groups of broadband noise."""
+        motion, rotor, shaft = around.motion, around.rotor, around.shaft
+        methods: dict[str, Group] = {}
+        left = owner.count("nbbase", 0)
+        while left or self.next_name() in (*_METHODS, *_NOT_DONE):
+            self.refuse_not_done(owner)
+            group = self.take("cb", *_METHODS)
             if group.name == "cb":
-                motion += change_of_base(group, rotor)
-                rotor = rotor_azimuth(group) or rotor
+                frames = change_of_base(group, rotor)
+                if (turning := rotor_azimuth(group)) is not None:
+                    rotor = turning
+                    outside = (*motion, *frames[:-1])
+                    shaft = _Shaft(turning.rate, np.array(group.vector("axisvalue")), outside)
+                motion = (*motion, *frames)
                 left -= 1
             else:
-                warnings.warn(
-                    f"{owner}: &{group.name} has no effect: {_ELSEWHERE[group.name]} "
-                    "is not computed",
-                    stacklevel=5,
-                )
-        return tuple(motion), rotor
+                methods[group.name] = group
+        return around._replace(motion=motion, rotor=rotor, shaft=shaft), methods
 
-    def next_is_elsewhere(self) -> bool:
-        return self.position < len(self.groups) and self.groups[self.position].name in _ELSEWHERE
+    def refuse_not_done(self, owner: Group) -> None:
+        """Refuse a group of what is not computed."""
+        if (name := self.next_name()) in _NOT_DONE:
+            raise owner.error(_NOT_DONE[name])
+
+    def next_name(self) -> str:
+        return self.groups[self.position].name if self.position < len(self.groups) else ""
 
     def container(self, around: _Surrounding) -> None:
         group = self.take("containerin")
         if around.depth > _DEEPEST:
             raise group.error(f"containers must be at most {_DEEPEST} deep within each other")
-        own, rotor = self.chain(group, "nbbase", around.rotor)
-        motion = (*around.motion, *own)
+        within, methods = self.chain_of_sources(group, around)
+        motion = within.motion
         step = _step(group, self.longest)
         if step is None:
             step = around.step
         title = group.text("title") or ""
         self.chains[title.lower()] = motion
+        first = len(self.containers)
         geometry, loading = (group.text(f"patch{kind}file") for kind in ("geometry", "loading"))
         if geometry is not None or loading is not None:
             if geometry is None:
@@ -266,13 +249,29 @@ class _Parser:
                 )
             )
         for _ in range(group.count("nbcontainer", 0)):
-            self.container(_Surrounding(motion, rotor, step, around.depth + 1))
+            self.container(within._replace(step=step, depth=around.depth + 1))
+        noises = _broadband(group, methods)
+        if noises and not self.is_broadband:
+            warnings.warn(f"{group}: its noise is not heard: broadbandFlag is off", stacklevel=4)
+        for noise in noises if self.is_broadband else ():
+            shaft = within.shaft
+            self.broadband.append(
+                BroadbandContainer(
+                    str(group),
+                    motion,
+                    None if shaft is None else shaft.rate,
+                    None if shaft is None else shaft.axis,
+                    motion if shaft is None else shaft.motion,
+                    noise,
+                    tuple(self.containers[first:]),
+                )
+            )
 
     def observers(self) -> Callable[[], ObserverGrid]:
         group = self.take("observerin")
-        own, _ = self.chain(group, "nbbase")
-        around, _ = self.chain(group, "nbbaseobscontframe")
-        local, _ = self.chain(group, "nbbaselocalframe")
+        own, around, local = (
+            self.chain(group, f"nbbase{kind}") for kind in ("", "obscontframe", "localframe")
+        )
         n = group.count("nt", least=2, most=_MOST_TIMES)
         t_min, t_max = group.number("tmin"), group.number("tmax")
         if not t_max > t_min:
@@ -281,7 +280,8 @@ class _Parser:
             group.number("highpassfrequency", 0.0),
             group.number("lowpassfrequency", np.inf),
         )
-        points = observer_points(group)
+        points, shape = observer_points(group)
+        listening = _listening(group, t_max - t_min)
         self.n_observers += len(points)
         self.n_pressures += n * len(points)
         self.longest = max(self.longest, t_max - t_min)
@@ -299,7 +299,8 @@ class _Parser:
             chain = (*around, *(self.chains[attached.lower()] if attached else ()), *local, *own)
             position, velocity = uniform_motion(group, chain, points)
             times = np.linspace(t_min, t_max, n)
-            return ObserverGrid(group.text("title") or "", position, velocity, times, band)
+            title = group.text("title") or ""
+            return ObserverGrid(title, position, velocity, times, band, shape, *listening)
 
         return place_observers
 
@@ -311,6 +312,52 @@ def _sources(environment: Group) -> tuple[bool, bool]:
     )
     total = total or not (thickness or loading)
     return thickness or total, loading or total
+
+
+def _wanted(environment: Group) -> Wanted:
+    """Return which results are asked for; files are binary unless text is asked for."""
+    return Wanted(
+        *(
+            environment.flag(f"{name}flag")
+            for name in (
+                "spectrum", "spldba", "oaspldb", "oaspldba", "sel", "pnlt", "epnl", "asciioutput",
+            )
+        )
+    )  # fmt: skip
+
+
+def _broadband(container: Group, methods: dict[str, Group]) -> list[BpmNoise | PeggNoise]:
+    """Return the broadband noise that a container asks for."""
+    noises: list[BpmNoise | PeggNoise] = []
+    for name, flag in _METHODS.items():
+        if not container.flag(flag):
+            if name in methods:
+                warnings.warn(f"{container}: &{name} has no effect: {flag} is off", stacklevel=5)
+            continue
+        if name not in methods:
+            raise container.error(f"{flag} needs a &{name} group behind the container")
+        group = methods[name]
+        noises.append(bpm_noise(group) if name == "bpmin" else pegg_noise_of(group))
+    return noises
+
+
+def _listening(group: Group, length: float) -> tuple[float, float, str, bool, bool]:
+    """Return segment, step, window, whether third octaves are wanted and whether air absorbs."""
+    segment = group.number("segmentsize", length)
+    step = group.number("segmentstepsize", segment)
+    if not (0.0 < segment <= length * (1.0 + 1e-9) and step > 0.0):
+        raise group.error(
+            f"segmentSize must be within the record of {length:g} s and segmentStepSize above 0;"
+            f" they are {segment:g} and {step:g}"
+        )
+    name = group.text("windowfunction")
+    window = "boxcar" if not name else _WINDOWS.get(name.lower())
+    if window is None:
+        raise group.error(f"windowFunction {name!r} is not done, only 'Hanning Window'")
+    octaves = group.flag("octaveflag")
+    if octaves and group.number("octavenumber", 3) != 3:
+        raise group.error("octaveNumber must be 3: levels are of third octaves")
+    return min(segment, length), step, window, octaves, group.flag("atmatten")
 
 
 def _step(group: Group, longest: float) -> float | None:

@@ -202,12 +202,38 @@ def _in_time(table: Array, zone: Zone, tau: Array, key_offset: float) -> _Rates:
     keys = zone.keys.astype(float)
     if zone.period is None:
         return sample(table, keys, tau)
+    unit = _key_unit(table, keys, zone.period, zone.name)
+    return sample(table, unit * keys, tau + unit * key_offset, zone.period)
+
+
+def key_offset_in_time(zone: Zone, key_offset: float) -> float:
+    """Offset of a zone's periodic keys as a time.
+
+    Parameters
+    ----------
+    zone : Zone
+        Zone of a file.
+    key_offset : float
+        Offset in the unit of the keys.
+
+    Returns
+    -------
+    float
+        Offset [s], 0 if the zone is not periodic.
+    """
+    if zone.keys is None or zone.period is None:
+        return 0.0
+    values = zone.values.astype(float)
+    return key_offset * _key_unit(values, zone.keys.astype(float), zone.period, zone.name)
+
+
+def _key_unit(table: Array, keys: Array, period: float, name: str) -> float:
+    """Time that a periodic key is [s]."""
     # Keys are in any unit; one period is where the first values come back. Files repeat them at
     # their end or leave them out.
     n, span = len(keys), keys[-1] - keys[0]
     if n < 2 or not span > 0:
-        raise ValueError(f"keys of the periodic zone {zone.name!r} must be 2 or more that increase")
+        raise ValueError(f"keys of the periodic zone {name!r} must be 2 or more that increase")
     scale = np.ptp(table) or 1.0
     repeats = np.abs(table[-1] - table[0]).max() < 1e-6 * scale
-    unit = zone.period / (span if repeats else span * n / (n - 1))
-    return sample(table, unit * keys, tau + unit * key_offset, zone.period)
+    return float(period / (span if repeats else span * n / (n - 1)))

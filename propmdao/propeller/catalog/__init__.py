@@ -1,4 +1,4 @@
-"""Propellers and airfoils that ship with propmdao: names, and where their files are."""
+"""Propellers, airfoils and motors that ship with propmdao: names, and where their files are."""
 
 from __future__ import annotations
 
@@ -61,6 +61,17 @@ def airfoil_file(name: str) -> Traversable:
         `propmdao.propeller.airfoils.airfoil.CHORD_FRACTION`.
     """
     return _FOLDER / "airfoils" / f"{name}.toml"
+
+
+def motor_file() -> Traversable:
+    """Get the TOML file of the motors.
+
+    Returns
+    -------
+    Traversable
+        The file: a table for each motor.
+    """
+    return _FOLDER / "motors" / "motors.toml"
 
 
 def _names(folder: str) -> list[str]:

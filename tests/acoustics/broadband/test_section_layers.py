@@ -16,9 +16,9 @@ def side(momentum=0.004, shape=1.5, transition=0.3):
     return EdgeSide(*map(jnp.asarray, (momentum, shape, transition, 0.95)))
 
 
-def layer(degrees=5.0, upper=None, lower=None, trip="none"):
+def layer(degrees=5.0, upper=None, lower=None):
     sides = upper or side(), lower or side(0.002, 2.0)
-    return layer_of_sections(CHORD, jnp.radians(jnp.asarray(degrees)), *sides, trip)
+    return layer_of_sections(CHORD, jnp.radians(jnp.asarray(degrees)), *sides)
 
 
 def test_thicknesses_follow_from_momentum_thickness_and_shape():
@@ -44,12 +44,6 @@ def test_lift_tells_the_suction_side():
     assert_allclose(middle.momentum_pressure, middle.momentum_suction)
 
 
-def test_the_heavy_trip_adds_what_the_report_adds_to_its_light_one():
-    light, heavy = layer(trip="light"), layer(trip="heavy")
-    assert_allclose(light.displacement_suction / heavy.displacement_suction, 0.6)
-    assert_allclose(light.displacement_suction, layer().displacement_suction)
-
-
 @pytest.mark.parametrize(
     ("shape", "transition", "degrees", "share"),
     [
@@ -67,8 +61,6 @@ def test_laminar_layers_shed_where_they_separate_on_the_pressure_side(
 ):
     lower = side(0.002, shape, transition)
     assert_allclose(layer(degrees, lower=lower).shedding, share, atol=1e-12)
-    for trip in ("light", "heavy"):
-        assert not np.any(layer(degrees, lower=lower, trip=trip).shedding)
 
 
 def test_nothing_jumps_and_derivatives_are_those_of_the_values():

@@ -14,9 +14,10 @@ import pytest
 from scipy.special import hankel2
 
 from propmdao.aerodynamics.rotor_geometry import RotorGeometry
-from propmdao.aerodynamics.solutions.period.lattice import PeriodWake, period_lattice
+from propmdao.aerodynamics.solutions.period.lattice import period_lattice
 from propmdao.aerodynamics.solutions.period.loads import period_loads
 from propmdao.aerodynamics.solutions.period.onset import PeriodOnset, azimuths_of
+from propmdao.aerodynamics.solutions.period.wake import PeriodWake
 from propmdao.aerodynamics.wakes.ages import wake_azimuths
 from propmdao.aerodynamics.wakes.history import shedding_delay
 from propmdao.aerodynamics.wakes.sheets import Sheets

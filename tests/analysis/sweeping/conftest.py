@@ -5,11 +5,13 @@ from __future__ import annotations
 import sys
 import types
 import warnings
+from collections.abc import Iterator, Sequence
 from typing import Any
 
 import pytest
 
 from propmdao.analysis.request import Request
+from propmdao.analysis.sweeping.batches import Outcome
 from propmdao.formats.propellers import load_propeller
 from propmdao.propeller.description import Propeller
 
@@ -44,7 +46,7 @@ class Answer:
 
 
 class Analyzer:
-    """In place of `propmdao.analysis.single_point`: keeps what was asked; 13 m/s is too fast."""
+    """In place of `analysis.sweeping.batches`: keeps what was asked; 13 m/s is too fast."""
 
     def __init__(self) -> None:
         self.asked: list[Request] = []
@@ -60,12 +62,23 @@ class Analyzer:
             raise FloatingPointError("underflow")
         return Answer(request)
 
+    def analyze_each(self, propeller: Propeller, asked: Sequence[Any]) -> Iterator[Outcome[Any]]:
+        for values in asked:
+            result: Any
+            with warnings.catch_warnings(record=True) as caught:
+                warnings.simplefilter("always")
+                try:
+                    result = self.analyze(propeller, **values)
+                except Exception as error:
+                    result = error
+            yield Outcome(result, [" ".join(str(w.message).split()) for w in caught])
+
 
 @pytest.fixture
 def analyzer(monkeypatch: pytest.MonkeyPatch) -> Analyzer:
     analyzer = Analyzer()
-    module = types.SimpleNamespace(analyze=analyzer.analyze)
-    monkeypatch.setitem(sys.modules, "propmdao.analysis.single_point", module)
+    module = types.SimpleNamespace(analyze_each=analyzer.analyze_each)
+    monkeypatch.setitem(sys.modules, "propmdao.analysis.sweeping.batches", module)
     return analyzer
 
 

@@ -95,7 +95,7 @@ def test_tables_are_the_json_rounded(folder: Path, capsys: pytest.CaptureFixture
 
 def test_keys_without_effect_are_named_on_stderr(folder: Path, capsys: pytest.CaptureFixture[str]):
     change(folder, "environmentin", colour=3)
-    change(folder, "observerin", windowfunction="Hanning Window")
+    change(folder, "observerin", flavour=3)
     assert main(["wopwop", str(folder), "--json"]) == 0
     output = capsys.readouterr()
     assert json.loads(output.out)
@@ -103,7 +103,44 @@ def test_keys_without_effect_are_named_on_stderr(folder: Path, capsys: pytest.Ca
     assert len(lines) == 2
     assert all(line.startswith("propmdao wopwop: warning: ") for line in lines)
     assert "&environmentin: colour is not known and has no effect" in lines[0]
-    assert "&observerin 'observer 1': windowfunction" in lines[1]
+    assert "&observerin 'observer 1': flavour" in lines[1]
+
+
+def test_broadband_noise_and_levels_are_told_and_written(
+    folder: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        groups = [(group.name, dict(group.values)) for group in read_namelists(folder / "case.nam")]
+    flags = {"broadbandflag": True, "spectrumflag": True, "oaspldbflag": True, "selflag": True}
+    groups[0][1].update(flags, asciioutputflag=True)
+    for name, values in groups:
+        if name == "observerin":
+            values["octaveflag"] = True
+    turning = next(k for k, (name, values) in enumerate(groups) if "rotation" in values)
+    owner = max(k for k, (name, _) in enumerate(groups[:turning]) if name == "containerin")
+    groups[owner][1]["peggnoiseflag"] = True
+    values = {"totalthrust": 5.0, "totalbladearea": 0.004, "bladeradius": 0.2}
+    pegg = values | {f"{key}flag": "UserValue" for key in values}
+    n_bases = groups[owner][1]["nbbase"]
+    groups.insert(owner + 1 + n_bases, ("peggin", pegg))
+    write_namelists(folder / "case.nam", groups)
+    assert main(["wopwop", str(folder), "--json", "--levels", str(folder / "levels")]) == 0
+    found = json.loads(capsys.readouterr().out)
+    (observer,) = found[0]["observers"]
+    powers = [10 ** (0.1 * observer[key]) for key in ("oaspl_db", "oaspl_broadband_db")]
+    together = 10 * np.log10(sum(powers))
+    assert observer["oaspl_total_db"] == pytest.approx(together, abs=1e-9)
+    bands = np.array([band["spl_db"] for band in observer["third_octave"]])
+    assert 10 * np.log10(np.sum(10 ** (0.1 * bands))) == pytest.approx(together, abs=1e-6)
+    seconds = found[0]["duration"] * 63 / 64
+    exposure = observer["oaspl_total_dba"] + 10 * np.log10(seconds)
+    assert observer["sel_dba"] == pytest.approx(exposure, abs=1e-6)
+    names = sorted(path.name for path in (folder / "levels" / "case_1").iterdir())
+    stems = ("OASPLdB", "spl_mspBB", "spl_octFilt_spectrum", "spl_spectrum")
+    assert names == [f"{stem}.{end}" for stem in stems for end in ("fn", "nam", "x")]
+    assert main(["wopwop", str(folder)]) == 0
+    assert f"{observer['sel_dba']:.1f}" in capsys.readouterr().out
 
 
 def truncate(folder: Path) -> None:

@@ -9,8 +9,8 @@ from numpy.testing import assert_allclose
 pytest.importorskip("matplotlib")
 
 from propmdao.acoustics.levels.decibels import spl_db
+from propmdao.figures.contents.sound import Sound, band_levels, source_levels
 from propmdao.figures.designs.spectra_over_each_other import spectra_over_each_other
-from propmdao.figures.sound import Sound, band_levels, source_levels
 
 
 def test_tones_bands_and_overall_levels_are_those_of_the_sounds(figures, sounds):

@@ -10,7 +10,8 @@ from numpy.testing import assert_allclose
 
 pytest.importorskip("matplotlib")
 
-from propmdao.figures.rotor.sweep_maps import SHOWN, sweep_maps, varied_columns
+from propmdao.figures.contents.sweeps import SHOWN, varied_columns
+from propmdao.figures.rotor.sweep_maps import sweep_maps
 
 
 def rows(rpms, speeds):

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from propmdao.formats.blade_tables.assumptions import AssumedBladeWarning
-from propmdao.formats.blades import export_csv
+from propmdao.formats.exchange.blades import export_csv
 from propmdao.formats.propellers import load_propeller
 from propmdao.geometry.blade import Blade
 from propmdao.propeller.checks import PropellerError

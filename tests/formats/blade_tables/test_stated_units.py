@@ -84,6 +84,16 @@ def test_trailing_edges_and_tips_are_described(text: str, over_R: object, tmp_pa
     assert again.tip == "square" and checksum(again) == checksum(blade)
 
 
+@pytest.mark.parametrize("trip", ["light", ("none", "light", "heavy"), None])
+def test_trips_are_described(trip: object, tmp_path: Path) -> None:
+    written = "" if trip is None else f"trip = {list(trip) if trip != 'light' else trip!r}\n"
+    blade = read_toml(file(tmp_path, written))
+    assert blade.trip == trip
+    write_toml(tmp_path / "again.toml", blade)
+    again = read_toml(tmp_path / "again.toml")
+    assert again.trip == trip and checksum(again) == checksum(blade)
+
+
 @pytest.mark.parametrize("line", ["flat_bottom", "parting_line", "chord"])
 def test_the_blade_angle_may_be_of_another_line(line: str, tmp_path: Path) -> None:
     """Referred to the line again, the angle of the chord line is what was written."""

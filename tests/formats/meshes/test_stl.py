@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from propmdao.formats.blades import export_stl
+from propmdao.formats.exchange.blades import export_stl
 from propmdao.formats.meshes.stl import rotor_triangles, write_stl
 from propmdao.formats.propellers import load_propeller
 from propmdao.geometry.blade import Blade

@@ -11,7 +11,7 @@ import pytest
 from propmdao.formats.wopwop.binary import WopwopFileError
 from propmdao.formats.wopwop.geometry_file import GeometryFile, read_geometry, write_geometry
 from propmdao.formats.wopwop.loading_file import LoadingFile, read_loading, write_loading
-from propmdao.formats.wopwop.pressure_file import read_pressure
+from propmdao.formats.wopwop.outputs.pressure_file import read_pressure
 from propmdao.formats.wopwop.zones import Zone
 
 

@@ -98,20 +98,32 @@ def test_what_is_written_is_read_back(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("text", "message"),
     [
-        ("&ObserverIn octaveFlag = .true. /", "octaveflag has no effect: levels in octave bands"),
-        ("&EnvironmentIn SPLdBAFlag = T /", "spldbaflag has no effect: the spectrum is not A-wei"),
         ("&EnvironmentConstants P_ref = 1e-6 /", "p_ref has no effect: levels are in dB re 20 uPa"),
-        ("&ObserverIn segmentSize = 1.0 /", "segmentsize has no effect: the record is taken as a"),
-        ("&ContainerIn BPMNoiseFlag = .true. /", "bpmnoiseflag has no effect: broadband noise"),
         ("&CB colour = 3 /", "colour is not known and has no effect"),
     ],
 )
-def test_what_is_asked_for_and_not_done_is_named(tmp_path: Path, text: str, message: str) -> None:
+def test_what_has_no_effect_is_named(tmp_path: Path, text: str, message: str) -> None:
     (tmp_path / "x.nam").write_text(text)
     with pytest.warns(UserWarning) as caught:
         read_namelists(tmp_path / "x.nam")
     (warning,) = caught
     assert message in str(warning.message)
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("&ObserverIn nbHarmonics = 3 /", "nbharmonics asks for what is not done: all harmonics"),
+        ("&EnvironmentIn sigmaFlag = T /", "sigmaflag asks for what is not done: no data on the"),
+        ("&EnvironmentIn PNLFlag = T /", "pnlflag asks for what is not done: PNL without the"),
+        ("&ContainerIn BWINoiseFlag = .true. /", "bwinoiseflag asks for what is not done: noise"),
+    ],
+)
+def test_what_is_asked_for_and_not_done_is_refused(tmp_path: Path, text: str, message: str) -> None:
+    (tmp_path / "x.nam").write_text(text)
+    with pytest.raises(WopwopFileError) as caught:
+        read_namelists(tmp_path / "x.nam")
+    assert message in str(caught.value) and "\n" not in str(caught.value)
 
 
 @pytest.mark.filterwarnings("error")

@@ -18,7 +18,7 @@ def test_both_wakes_are_marched_and_the_free_one_drawn(import_study, monkeypatch
     monkeypatch.setattr(sys, "argv", ["rolling_wake.py", "--quick", "--output", str(tmp_path)])
     study.main()
     printed = capsys.readouterr().out
-    rigid, free = (float(text) for text in re.findall(r"revolution ([\d.]+) %", printed))
+    rigid, free = (float(text) for text in re.findall(r" per revolution ([\d.]+) %", printed))
     assert 0.0 < free < rigid < 15.0  # of a blade's mean thrust
     assert (tmp_path / "wake.png").stat().st_size > 10_000
     with image.open(tmp_path / "wake.gif") as gif:

@@ -6,6 +6,7 @@ import jax.numpy as jnp
 import numpy as np
 from jax import Array
 
+from propmdao.aerodynamics.lattice.chord_lines import LINE_POINTS
 from propmdao.aerodynamics.solutions.case import RotorCase
 from propmdao.aerodynamics.solutions.marching.gusts import Gust, gust_of
 from propmdao.aerodynamics.solutions.marching.step import MarchedLattice, Past, marched_lattice
@@ -100,8 +101,15 @@ def march_flow(case: RotorCase, schedule: Marching) -> MarchFlow:
     edge = lattice.period.lattice.rings.corner[-1]
     chosen, to_strips = fewer_filaments(edge, max(edge.shape[0] // 2 + 1, _FEWEST))
     n_near = min(max(int((ages < _FAR).sum()), n_young), middle.size - 2)
+    n_close = max(case.wake.n_near, n_young)
+    is_read = lattice.period.n_chordwise > LINE_POINTS and n_close < n_near
     parts = WakeParts(
-        jnp.asarray(chosen), jnp.asarray(to_strips), case.rotor.radius, n_young, n_near
+        jnp.asarray(chosen),
+        jnp.asarray(to_strips),
+        case.rotor.radius,
+        n_young,
+        n_near,
+        n_close if is_read else None,
     )
     if schedule.wake_motion == "free":
         wanted = schedule.free_wake

@@ -15,6 +15,7 @@ import jax
 import jax.numpy as jnp
 from jax import Array
 
+from propmdao.aerodynamics.lattice.chord_lines import at_collocation, at_segments
 from propmdao.aerodynamics.sections.laws import ViscousSections
 from propmdao.aerodynamics.sections.recambering import SectionStates
 from propmdao.aerodynamics.solutions.period.coupling import (
@@ -34,7 +35,9 @@ from propmdao.aerodynamics.wakes.sheets import (
     Sheets,
     WakeParts,
     normalwash_of_strips,
+    older_velocities,
     wake_velocities,
+    youngest_velocities,
 )
 from propmdao.records.air import Air
 from propmdao.records.pytrees import Scalar, record
@@ -152,17 +155,31 @@ def step_loads(
     collocation, on_segments = points[:n_panels], points[n_panels:]
 
     known, now = remembered(lag, past.strips)
+    seen_known = seen_from_each(known, n_blades)
     still = jnp.zeros((n_blades, ns))
+    older = None
+    if parts.n_close is not None:
+        lines = period.lines.points
+        older = jax.lax.map(
+            lambda place: older_velocities(lines, place[0], parts, place[1]), (sheets, seen_known)
+        )
 
-    def at_collocation(place: tuple[Sheets, Array]) -> tuple[Array, Array]:
+    def by_rings(points: Array, seen: Sheets, ring: Array, present: Array) -> Array:
+        """Velocity by the rings that act on every point."""
+        if parts.n_close is None:
+            return wake_velocities(points, seen, parts, ring, present)
+        return youngest_velocities(points, seen, parts.n_close, ring, present)
+
+    def on_panels(place: tuple[Sheets, Array]) -> tuple[Array, Array]:
         seen, ring = place
-        velocity = wake_velocities(collocation, seen, parts, ring, still)
         young = seen.youngest(parts.n_young)
         by_strips = normalwash_of_strips(collocation, normal, young, now[:, : parts.n_young])
-        return jnp.einsum("cp,pc->p", velocity, normal), by_strips
+        return by_rings(collocation, seen, ring, still), by_strips
 
-    by_wake, by_strips = jax.lax.map(at_collocation, (sheets, seen_from_each(known, n_blades)))
-    normalwash = jnp.einsum("kcp,pc->kp", onset.velocity[:, :, :n_panels], normal) + by_wake
+    velocity, by_strips = jax.lax.map(on_panels, (sheets, seen_known))
+    if older is not None:
+        velocity += at_collocation(older, period.n_chordwise)
+    normalwash = jnp.einsum("kcp,pc->kp", onset.velocity[:, :, :n_panels] + velocity, normal)
     by_strips = _by_blade(by_strips)
     laws = None
     if polars is not None:
@@ -172,9 +189,11 @@ def step_loads(
     velocity = velocity_by_air_and_blades(period, onset, held.circulation)
     ring = known + now * held.strips[..., None]
     velocity += jax.lax.map(
-        lambda place: wake_velocities(on_segments, place[0], parts, *place[1:]),
+        lambda place: by_rings(on_segments, *place),
         (sheets, seen_from_each(ring, n_blades), seen_from_each(held.strips, n_blades)),
     )
+    if older is not None:
+        velocity += at_segments(older, period.n_chordwise)
 
     rate = (1.5 * held.circulation - 2.0 * past.rings[0] + 0.5 * past.rings[1]) / timestep
     return StepLoads(

@@ -5,15 +5,16 @@ from __future__ import annotations
 import jax.numpy as jnp
 from jax import Array
 
+from propmdao.aerodynamics.lattice.chord_lines import LINE_POINTS
 from propmdao.aerodynamics.lattice.rings import BOUND_CORE
 from propmdao.aerodynamics.solutions.case import RotorCase
 from propmdao.aerodynamics.solutions.period.lattice import (
     PeriodLattice,
-    PeriodWake,
     period_lattice,
 )
 from propmdao.aerodynamics.solutions.period.loads import PeriodBladeLoads, period_loads
 from propmdao.aerodynamics.solutions.period.onset import azimuths_of, tilted_onset
+from propmdao.aerodynamics.solutions.period.wake import PeriodWake
 from propmdao.aerodynamics.wakes.helical import helical_wake
 from propmdao.aerodynamics.wakes.history import shedding_delay
 from propmdao.aerodynamics.wakes.momentum import momentum_induced_velocity
@@ -119,6 +120,7 @@ def loads_at(
         drift=sideways_drift(ages, azimuths, state),
         ages=ages,
         delay=delay,
+        n_near=case.wake.n_near if lattice.n_chordwise > LINE_POINTS else None,
     )
     return period_loads(lattice, wake, onset, state.rotation_speed, state.air, case.sections, start)
 

@@ -31,7 +31,9 @@ from propmdao.records.pytrees import Scalar
 _COARSE_TOLERANCE = 1.0e-4  # relative, in the induced velocity
 _GUESS = 0.05  # of the tip speed
 _LEAST_AZIMUTHS = 12
-_STEEPEST = -10.0  # slope of the residual; it is never above -1, for thrust falls with w
+# Slope of the residual: about -1, for w moves the wake alone, and a wake that leaves faster takes
+# less of the thrust away.
+_STEEPEST, _FLATTEST = -10.0, -0.5
 
 
 def momentum_less(flow: TiltedFlow, w: Scalar, loads: PeriodBladeLoads) -> Array:
@@ -94,7 +96,7 @@ def coarse_root(flow: TiltedFlow, thrust_guess: Array) -> Guess[Array]:
     between = jnp.asarray(_between_azimuths(coarse.n_azimuths, flow.n_azimuths))
     settled = sections_agree(end.loads.sections)
     recambering = jnp.where(settled, between @ end.loads.recambering, 0.0)
-    return Guess(w, recambering, jnp.clip(end.slope, _STEEPEST, -1.0))
+    return Guess(w, recambering, jnp.clip(end.slope, _STEEPEST, _FLATTEST))
 
 
 class _Trial(NamedTuple):

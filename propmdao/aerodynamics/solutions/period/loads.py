@@ -30,12 +30,14 @@ from propmdao.aerodynamics.solutions.period.coupling import (
 )
 from propmdao.aerodynamics.solutions.period.lattice import (
     PeriodLattice,
-    PeriodWake,
     bound_inverse,
+)
+from propmdao.aerodynamics.solutions.period.onset import PeriodOnset
+from propmdao.aerodynamics.solutions.period.wake import (
+    PeriodWake,
     wake_normalwash,
     wake_velocities,
 )
-from propmdao.aerodynamics.solutions.period.onset import PeriodOnset
 from propmdao.records.air import Air
 from propmdao.records.pytrees import Scalar, record
 
@@ -111,18 +113,18 @@ def period_loads(
         Loads of blade 1.
     """
     geometry = lattice.lattice
-    normal, points = geometry.rings.normal, geometry.points
+    normal = geometry.rings.normal
     n_panels = normal.shape[0]
     n, ns = onset.relative_speed.shape
 
     normalwash = jnp.einsum("kcp,pc->kp", onset.velocity[:, :, :n_panels], normal)
-    by_wake = wake_normalwash(geometry, wake)
+    by_wake = wake_normalwash(lattice, wake)
     laws = None
     if sections is not None:
         laws = onset_laws(geometry, onset, air, sections)
     held = held_lattice(lattice, bound_inverse(lattice), onset, normalwash, by_wake, laws, start)
     velocity = velocity_by_air_and_blades(lattice, onset, held.circulation)
-    velocity += wake_velocities(points[n_panels:], wake, held.strips)
+    velocity += wake_velocities(lattice, wake, held.strips)
     rate = rotation_speed * jnp.asarray(turn_derivative(n)) @ held.circulation
     by_lattice, by_motion = held.by_lattice, held.by_motion
     behind = onset.attached < 0.5

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from propmdao.formats.wopwop.binary import WopwopFileError
-from propmdao.formats.wopwop.namelists.keys import without_effect
+from propmdao.formats.wopwop.namelists.keys import not_done, without_effect
 from propmdao.formats.wopwop.namelists.syntax import formatted, parse
 from propmdao.runtime.input_files import read_text
 from propmdao.runtime.output_files import replacing
@@ -107,7 +107,8 @@ def read_namelists(path: str | Path) -> list[Group]:
     Raises
     ------
     WopwopFileError
-        If the file is missing or holds no namelist; the message has the line.
+        If the file is missing, holds no namelist (the message has the line), or asks for what is
+        not done.
     """
     path = Path(path)
     text = read_text(path, WopwopFileError, complaint=str(path), encoding="latin-1")
@@ -121,6 +122,8 @@ def read_namelists(path: str | Path) -> list[Group]:
     for name, values, line, closed in parsed:
         group = Group(name, values, path)
         groups.append(group)
+        if (refusal := next(not_done(name, values), None)) is not None:
+            raise group.error(refusal)
         complaints = [*without_effect(name, values)]
         if not closed:
             complaints.insert(0, f"in line {line}, it ends where the next begins, without a /")

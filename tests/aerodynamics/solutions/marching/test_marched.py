@@ -6,12 +6,15 @@ import jax.numpy as jnp
 import numpy as np
 import pytest
 
+from propmdao.aerodynamics.lattice.chord_lines import LINE_POINTS
 from propmdao.aerodynamics.rotor_geometry import RotorGeometry
 from propmdao.aerodynamics.sections.laws import viscous_sections
 from propmdao.aerodynamics.sections.polars.propeller_polars import polars_for
 from propmdao.aerodynamics.solutions import axial, periodic
 from propmdao.aerodynamics.solutions.case import RotorCase
+from propmdao.aerodynamics.solutions.marching.flow import march_flow
 from propmdao.aerodynamics.solutions.marching.marched import march
+from propmdao.aerodynamics.solutions.marching.stepping import advance, march_start
 from propmdao.aerodynamics.solutions.result import failure
 from propmdao.aerodynamics.wakes.helical import wake_transport
 from propmdao.formats.propellers import load_propeller
@@ -68,6 +71,21 @@ def test_an_impulsive_start_ends_in_the_steady_solution_and_says_that_it_has_not
     assert turns[-1].mean() == pytest.approx(steady, rel=0.005)
     assert not marched.settled and not marched.converged
     assert "from one revolution to the next" in failure(marched)
+
+
+def test_older_wake_is_read_between_points_of_a_strip(rotor, slow_flyer):
+    case = rotor(70.0, viscous=False)
+    nodes = slow_flyer.nodes(LINE_POINTS + 1, NS)
+    case = dataclasses.replace(case, rotor=dataclasses.replace(case.rotor, nodes=nodes))
+    flow = march_flow(case, SCHEDULE)
+    assert flow.parts.n_young <= flow.parts.n_close < flow.parts.n_near
+    everywhere = dataclasses.replace(flow, parts=dataclasses.replace(flow.parts, n_close=None))
+    state = march_start(flow, SCHEDULE)
+    read, exact = (advance(each, state, 0.3)[1] for each in (flow, everywhere))
+    # Chordwise segments lie between strips as coarse as what is under them: sums tell.
+    total, expected = (loads.force.sum(axis=0) for loads in (read, exact))
+    np.testing.assert_allclose(total, expected, atol=1e-3 * np.abs(expected).max())
+    assert not np.array_equal(total, expected)
 
 
 def test_at_an_incidence_it_ends_in_the_periodic_solution(rotor, tilted):

@@ -5,12 +5,9 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-import numpy.typing as npt
-
-from propmdao.figures.style import BLADE_COLORS, GRID, headline, line_styles, literal, page
-from propmdao.geometry.blade import Blade, span_interpolation
-from propmdao.propeller.airfoils.airfoil import CHORD_FRACTION
+from propmdao.figures.contents.distributions import blade_distributions, section_contours
+from propmdao.figures.contents.palette import BLADE_COLORS, line_styles
+from propmdao.figures.style import GRID, headline, literal, page
 from propmdao.propeller.description import Propeller
 
 if TYPE_CHECKING:
@@ -60,24 +57,10 @@ def blade_comparison(
 
 def _draw_spans(spans: Sequence[Axes], propeller: Propeller, **line: Any) -> None:
     """Draw distributions over span, the planform on the last axes."""
-    r = np.linspace(propeller.r_over_R[0], 1.0, 200)
-    span = span_interpolation(propeller.r_over_R, r)
-    chord, beta_deg, sweep = (
-        np.asarray(span.smooth) @ values
-        for values in (propeller.c_over_R, propeller.beta_deg, propeller.sweep_over_R)
-    )
-    camber, thickness = (np.asarray(span.linear) @ shape for shape in _sections(propeller))
-    largest = np.take_along_axis(camber, np.abs(camber).argmax(axis=1)[:, None], axis=1)
-    # Seen from ahead: the leading edge is toward +y, a quarter of the chord from the sweep line.
-    projected = chord * np.cos(np.radians(beta_deg))
-    edges = np.append(0.25 * projected - sweep, (-0.75 * projected - sweep)[::-1])
-    for axes, label, values in zip(
-        spans,
-        ("chord c/R", "blade angle, deg", "thickness t/c", "camber f/c", "planform y/R"),
-        (chord, beta_deg, thickness.max(axis=1), largest[:, 0], edges),
-        strict=True,
+    for axes, (label, (r, values)) in zip(
+        spans, blade_distributions(propeller).items(), strict=True
     ):
-        axes.plot(r if values.size == r.size else np.append(r, r[::-1]), values, **line)
+        axes.plot(r, values, **line)
         axes.set_ylabel(label)
 
 
@@ -85,18 +68,8 @@ def _draw_sections(
     sections: Sequence[Axes], propeller: Propeller, r_over_R: Sequence[float], **line: Any
 ) -> None:
     """Draw contours of unit chord, one on each axes."""
-    linear = np.asarray(span_interpolation(propeller.r_over_R, r_over_R).linear)
-    camber, thickness = (linear @ shape for shape in _sections(propeller))
-    x = np.append(CHORD_FRACTION[::-1], CHORD_FRACTION)
-    for axes, r, f, t in zip(sections, r_over_R, camber, thickness, strict=True):
-        axes.plot(x, np.append((f + 0.5 * t)[::-1], f - 0.5 * t), **line)
+    contours = section_contours(propeller, r_over_R)
+    for axes, r, (x, z) in zip(sections, r_over_R, contours, strict=True):
+        axes.plot(x, z, **line)
         axes.set_title(f"section at r/R {r:g}", fontsize="medium")
         axes.set_ylabel("z/c, stretched")
-
-
-def _sections(propeller: Propeller) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float64]]:
-    """Camber and thickness over chord, (n_stations, n_chord), as the blade has them."""
-    blade = Blade.from_propeller(propeller)
-    camber = blade.camber_over_chord[:, None] * blade.camber_shape
-    thickness = blade.thickness_over_chord[:, None] * blade.thickness_shape
-    return np.asarray(camber), np.asarray(thickness)

@@ -10,7 +10,7 @@ from numpy.testing import assert_allclose
 
 pytest.importorskip("matplotlib")
 
-from propmdao.figures.blades import blade_comparison
+from propmdao.figures.rotor.blades import blade_comparison
 
 
 def test_blades_pass_through_the_stations(propellers, figures, line):

@@ -11,7 +11,9 @@ from propmdao.acoustics.levels.bands import HALF_BAND, tones_in_bands
 from propmdao.acoustics.levels.decibels import level_db, mean_square
 from propmdao.acoustics.levels.weighting import a_weighting
 from propmdao.acoustics.signals import Tones
-from propmdao.figures.style import SOURCE_COLORS, Floats
+from propmdao.analysis.results import MECHANISMS, Analysis
+from propmdao.analysis.self_noise import BANDS_HZ
+from propmdao.figures.contents.palette import SOURCE_COLORS, Floats
 
 
 class Sound(NamedTuple):
@@ -140,3 +142,46 @@ def band_edges(bands_hz: Floats) -> Floats:
         Edges [Hz].
     """
     return np.append(bands_hz / HALF_BAND, bands_hz[-1] * HALF_BAND)
+
+
+def analysis_sound(analysis: Analysis) -> Sound:
+    """Sound of an analysis at all of its observers.
+
+    Parameters
+    ----------
+    analysis : Analysis
+        Analysis with or without broadband noise.
+
+    Returns
+    -------
+    Sound
+        Tones, and broadband noise where there is any.
+    """
+    if analysis.broadband is None:
+        return Sound.of_tones(analysis.tones)
+    return Sound(analysis.tones, BANDS_HZ, np.asarray(analysis.broadband.total))
+
+
+def mechanism_levels(analysis: Analysis, observer: int = 0) -> dict[str, Floats]:
+    """Third octaves of an analysis by mechanism of the broadband noise.
+
+    Parameters
+    ----------
+    analysis : Analysis
+        Analysis with broadband noise.
+    observer : int
+        Index of the observer.
+
+    Returns
+    -------
+    dict of str to (n_bands,) array
+        Levels in the bands `propmdao.analysis.self_noise.BANDS_HZ` [dB]: "total", with the tones,
+        "broadband", and each mechanism by its name.
+    """
+    noise = analysis.broadband
+    assert noise is not None
+    sound = analysis_sound(analysis)
+    powers = {"broadband": sound.broadband[observer]}
+    powers |= {name.replace("_", " "): getattr(noise, name)[observer] for name in MECHANISMS}
+    levels = {name: np.asarray(level_db(power)) for name, power in powers.items()}
+    return {"total": band_levels(sound, observer)} | levels

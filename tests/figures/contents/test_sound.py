@@ -12,7 +12,7 @@ from numpy.testing import assert_allclose
 pytest.importorskip("matplotlib")
 
 from propmdao.acoustics.levels.decibels import oaspl_db
-from propmdao.figures.sound import Sound, amplitudes, band_levels, source_levels
+from propmdao.figures.contents.sound import Sound, amplitudes, band_levels, source_levels
 
 
 def test_source_levels_add_energies_of_tones_and_noise(sounds, levels):

@@ -161,7 +161,7 @@ def uniform_motion(
     return position, pose.velocity[0]
 
 
-def observer_points(group: Group) -> NDArray[np.float64]:
+def observer_points(group: Group) -> tuple[NDArray[np.float64], tuple[int, int]]:
     """Observers in their own frame: one, a box or a part of a sphere.
 
     Parameters
@@ -171,8 +171,11 @@ def observer_points(group: Group) -> NDArray[np.float64]:
 
     Returns
     -------
-    (n, 3) array
+    points : (n, 3) array
         Positions, the first index (x, or theta of a sphere) fastest [m].
+    shape : tuple of int
+        Numbers along the first and the second index of the grid; those of a box are i and j of the
+        first two of its directions that have more than one, k counting with j.
 
     Raises
     ------
@@ -186,11 +189,15 @@ def observer_points(group: Group) -> NDArray[np.float64]:
     if "radius" in group.values:
         theta, psi = _grid(group, {"theta": "nbtheta", "psi": "nbpsi"})
         x, y, z = np.cos(psi) * np.cos(theta), np.cos(psi) * np.sin(theta), np.sin(psi)
-        return group.number("radius") * np.stack([x, y, z], axis=-1)
+        shape = group.count("nbtheta", 1), group.count("nbpsi", 1)
+        return group.number("radius") * np.stack([x, y, z], axis=-1), shape
     if {"nbx", "nby", "nbz"} & group.values.keys():
-        return np.stack(_grid(group, {q: f"nb{q}" for q in "xyz"}), axis=-1)
+        points = np.stack(_grid(group, {q: f"nb{q}" for q in "xyz"}), axis=-1)
+        counts = [n for q in "xyz" if (n := group.count(f"nb{q}", 1)) > 1]
+        first = counts[0] if len(counts) > 1 else 1
+        return points, (first, len(points) // first)
     if {"xloc", "yloc", "zloc", "attachedto"} & group.values.keys():
-        return np.array([[group.number(f"{q}loc", 0.0) for q in "xyz"]])
+        return np.array([[group.number(f"{q}loc", 0.0) for q in "xyz"]]), (1, 1)
     raise group.error("observers must be given as xLoc ..., nbx ... or radius ...")
 
 

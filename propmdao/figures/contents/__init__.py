@@ -1,0 +1,1 @@
+"""Pictures without a drawing library: values, their names and colours."""

@@ -1,0 +1,1 @@
+"""Results of PSU-WOPWOP: pressures read, levels written."""

@@ -1,0 +1,82 @@
+"""Points that share a blade, analysed together: the numbers of single analyses, and failures."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+import propmdao as pm
+from propmdao.analysis.results import Analysis
+from propmdao.analysis.sweeping import batches
+from propmdao.analysis.sweeping.batches import analyze_each
+
+PROPELLER = pm.load_propeller("apcsf_11x4.7_uiuc")
+SMALL: dict[str, Any] = {"fidelity": pm.Fidelity(n_chordwise=2, n_spanwise=4)}
+ELEMENTS: dict[str, Any] = {"blade_element": True, **SMALL}
+
+
+def numbers(analysis: Any) -> list[float]:
+    assert isinstance(analysis, Analysis)
+    results = analysis.to_dict()
+    return [results[name] for name in ("rpm", "thrust", "torque", "J", "CT", "CQ", "eta")]
+
+
+@pytest.mark.parametrize("drive", ["rpm", "thrust"])
+def test_blade_elements_in_batches_are_those_of_single_points(drive: str) -> None:
+    """Two blades, one batch each, in the order that was asked."""
+    values = {"rpm": (3000.0, 5000.0), "thrust": (1.0, 2.0)}[drive]
+    asked: list[Any] = [
+        {drive: value, "speed": speed, "twist_offset_deg": offset, **ELEMENTS}
+        for speed in (0.0, 6.0)
+        for offset in (0.0, 2.0)
+        for value in values
+    ]
+    together = [numbers(outcome.result) for outcome in analyze_each(PROPELLER, asked)]
+    alone = [numbers(pm.analyze(PROPELLER, **one)) for one in asked]
+    np.testing.assert_allclose(together, alone, rtol=1e-8)
+
+
+def test_failures_are_of_their_points() -> None:
+    """More points than fit into one call, of which some cannot be."""
+    asked: list[Any] = [
+        {"thrust": thrust, "speed": speed, **ELEMENTS}
+        for thrust, speed in ((1.0, 4.0), (500.0, 4.0), (1.0, 310.0), (-1.0, 4.0), (2.0, 4.0))
+    ]
+    asked += [asked[0]] * batches.BATCH_SIZE
+    outcomes = list(analyze_each(PROPELLER, asked))
+    said = [str(o.result) if isinstance(o.result, Exception) else "" for o in outcomes]
+    assert said[0] == said[4] == ""
+    assert said[1].startswith("thrust 500 N is out of reach at 4 m/s: ")
+    assert said[2].startswith("speed must be below 306.265 m/s to trim")
+    assert said[3].startswith("thrust must be within")
+    last = outcomes[-1].result
+    assert isinstance(last, Analysis) and float(last.loads.thrust) == pytest.approx(1.0)
+    fast: Any = {"rpm": 4e5, "speed": 0.0, **ELEMENTS}
+    (outcome,) = analyze_each(PROPELLER, [fast])
+    assert "tip Mach number must be below 1" in str(outcome.result)
+
+
+def test_a_blade_is_made_ready_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    """By the lattice, too, whose points are solved for one after the other."""
+    made = []
+    of = batches.ModelledBlade.of
+
+    def counted(*values: Any) -> Any:
+        made.append(values)
+        return of(*values)
+
+    monkeypatch.setattr(batches.ModelledBlade, "of", counted)
+    asked: list[Any] = [{"rpm": rpm, **SMALL} for rpm in (3000.0, 4000.0, 5000.0)]
+    outcomes = list(analyze_each(PROPELLER, asked))
+    assert len(made) == 1
+    alone = pm.analyze(PROPELLER, **asked[2])
+    np.testing.assert_allclose(numbers(outcomes[2].result), numbers(alone), rtol=1e-12)
+
+
+def test_a_blade_that_cannot_be_fails_at_all_its_points() -> None:
+    wide: list[Any] = [{"rpm": rpm, "chord_factor": 100.0, **ELEMENTS} for rpm in (3e3, 4e3)]
+    first, second = analyze_each(PROPELLER, wide)
+    assert isinstance(first.result, ValueError)
+    assert str(first.result) == str(second.result)
