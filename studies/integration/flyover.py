@@ -4,9 +4,8 @@ The propeller of a small aircraft in level flight, its axis along the path, over
 with hard ground. Tones come as a pressure record with its Doppler shift, broadband noise in third
 octaves that shift with it; both are absorbed by the air on their way. A study to copy and change.
 
-At the small angles of cruise, vortices shed by laminar boundary layers are loudest by far in the
-self-noise model, at 10 to 20 kHz. Real blades may shed fewer: the total with tripped boundary
-layers, which shed none, is shown as the other limit.
+At the small angles of cruise much hangs on whether boundary layers are laminar at the trailing
+edge: the total with tripped ones is shown as the other limit.
 """
 
 import argparse
