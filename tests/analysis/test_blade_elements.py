@@ -37,6 +37,7 @@ def test_a_thrust_is_reached():
     np.testing.assert_allclose(float(analysis.loads.thrust), 1.5, rtol=1e-8)
 
 
+@pytest.mark.slow
 def test_at_an_incidence_they_have_loads_around_the_turn_and_noise():
     """A drone that leans forward by 20 deg, at its thrust; sweeps have the same numbers."""
     asked = {"thrust": 1.5, "speed": 8.0, "incidence_deg": 70.0, "fidelity": COARSE}

@@ -16,10 +16,10 @@ COMMANDS = ("analyze", "sweep", "flyover", "export")
 #: Options that are of a command, not of what is asked of an analysis.
 OTHERS = {
     "analyze": "--band --polar --json --wav --seconds --full-scale --figures --figure-at"
-    " --figure-dba --out --spectra --vtk --motor --battery-wh --usable-share",
-    "sweep": "--points --samples --seed --workers --out --figures",
+    " --figure-dba --out --spectra --vtk --report --motor --battery-wh --usable-share",
+    "sweep": "--points --samples --seed --workers --out --figures --report",
     "flyover": "--height --sideline --microphone --duration --no-absorption --absorption --json"
-    " --out --figures --wav --full-scale",
+    " --out --figures --report --wav --full-scale",
     "export": "--to --section --reynolds --units --hub",
 }
 LISTENING = "--arc --point --circle --hemisphere --grid"

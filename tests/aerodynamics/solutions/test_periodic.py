@@ -46,7 +46,7 @@ def flipped(nodes):
     return nodes.at[..., 2].multiply(-1.0)
 
 
-@pytest.mark.parametrize("viscous", [False, True])
+@pytest.mark.parametrize("viscous", [pytest.param(False, marks=pytest.mark.slow), True])
 def test_without_incidence_it_is_the_steady_solution(rotor, viscous):
     for speed in (8.0, 0.0):
         case = rotor(speed, viscous=viscous)
@@ -128,6 +128,7 @@ def test_stalled_and_reversed_flow_has_a_solution(rotor, speed, incidence_deg):
     assert not behind[3 * N // 4].any()
 
 
+@pytest.mark.slow
 def test_the_guess_changes_nothing_but_the_work(rotor):
     case = rotor(12.0, 90.0, viscous=True)
     poor, wild = (periodic.solve(case, thrust) for thrust in (0.1, 300.0))

@@ -23,7 +23,7 @@ def numbers(analysis: Any) -> list[float]:
     return [results[name] for name in ("rpm", "thrust", "torque", "J", "CT", "CQ", "eta")]
 
 
-@pytest.mark.parametrize("drive", ["rpm", "thrust"])
+@pytest.mark.parametrize("drive", ["rpm", pytest.param("thrust", marks=pytest.mark.slow)])
 def test_blade_elements_in_batches_are_those_of_single_points(drive: str) -> None:
     """Two blades, one batch each, in the order that was asked."""
     values = {"rpm": (3000.0, 5000.0), "thrust": (1.0, 2.0)}[drive]
