@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import importlib
 import sys
 import types
 from collections.abc import Callable
@@ -91,6 +92,8 @@ def polar_text() -> str:
 
 @pytest.fixture
 def recorder(monkeypatch: pytest.MonkeyPatch) -> Recorder:
+    # What takes more from the module than `analyze` has to have it before it is replaced.
+    importlib.import_module("propmdao.analysis.sweeping.batches")
     recorder = Recorder()
     module = types.SimpleNamespace(analyze=recorder.analyze)
     monkeypatch.setitem(sys.modules, "propmdao.analysis.single_point", module)
