@@ -11,12 +11,11 @@ from __future__ import annotations
 import dataclasses
 import os
 import re
-import warnings
 from pathlib import Path
 
 import numpy as np
 
-from propmdao.formats.blade_tables.assumptions import AssumedBladeWarning
+from propmdao.formats.blade_tables.assumptions import assumed_propeller
 from propmdao.formats.exchange.naca_sections import (
     AIRFOIL,
     camber_of_design_lift,
@@ -138,32 +137,24 @@ def read_bem(path: str | os.PathLike[str]) -> Propeller:
         airfoils, camber = [name for name, _ in sections], np.array([c for _, c in sections])
         camber_of = "zero-lift angle"
     tip = float(radius[-1])
-    try:
-        propeller = Propeller(
-            name=path.stem,
-            diameter=tip * _number(path, header, _DIAMETER),
-            n_blades=n_blades,
-            r_over_R=radius / tip,
-            c_over_R=blade.chord / tip,
-            beta_deg=blade.twist + feather,
-            airfoils=list(zip(radius[-len(airfoils) :] / tip, airfoils, strict=True)),
-            thickness_over_chord=blade.thickness,
-            camber_over_chord=camber,
-            sweep_over_R=aft / tip,
-            rake_over_R=up / tip,
-            source=f"OpenVSP, {path.name}",
-        )
-    except PropellerError as error:
-        raise PropellerError(f"{path}: {error}") from error
     n_naca = n_sections if sections is None else airfoils.count(AIRFOIL)
     naca = f"; NACA 4-digit sections of the file's thickness and {camber_of} at {n_naca} of "
     naca += f"{n_sections} stations"
-    warnings.warn(
-        f"{path}: assumed, for the file does not say: lengths in metres{naca if n_naca else ''}",
-        AssumedBladeWarning,
-        stacklevel=4,  # past the table of readers and `load_propeller`
+    return assumed_propeller(
+        path,
+        f"lengths in metres{naca if n_naca else ''}",
+        diameter=tip * _number(path, header, _DIAMETER),
+        n_blades=n_blades,
+        r_over_R=radius / tip,
+        c_over_R=blade.chord / tip,
+        beta_deg=blade.twist + feather,
+        airfoils=list(zip(radius[-len(airfoils) :] / tip, airfoils, strict=True)),
+        thickness_over_chord=blade.thickness,
+        camber_over_chord=camber,
+        sweep_over_R=aft / tip,
+        rake_over_R=up / tip,
+        source=f"OpenVSP, {path.name}",
     )
-    return propeller
 
 
 def _header(path: Path, lines: list[str]) -> dict[str, str]:

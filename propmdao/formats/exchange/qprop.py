@@ -9,13 +9,12 @@ tip radius in metres; the guide's example has it in the unit of the stations.
 from __future__ import annotations
 
 import os
-import warnings
 from pathlib import Path
 
 import numpy as np
 
-from propmdao.formats.blade_tables.assumptions import AssumedBladeWarning
-from propmdao.formats.exchange.naca_sections import AIRFOIL, camber_of_zero_lift
+from propmdao.formats.blade_tables.assumptions import assumed_propeller
+from propmdao.formats.exchange.naca_sections import OPEN_TIP, blade_by_zero_lift
 from propmdao.formats.exchange.section_fits import TIP_MACH, SectionFit, section_fits
 from propmdao.propeller.checks import PropellerError
 from propmdao.propeller.description import Propeller
@@ -25,8 +24,6 @@ from propmdao.runtime.terminal import printable
 
 #: Stations that QPROP has room for.
 _MOST = 81
-#: Part of the radius that may lie beyond the last station.
-_OPEN_TIP = 0.1
 #: Lines ahead of the stations: how many numbers each has at least and at most, and which.
 _HEADER = (
     (1, 2, "Nblades [R]"),
@@ -138,31 +135,20 @@ def read_qprop(path: str | os.PathLike[str]) -> Propeller:
     slopes = np.array([row[4] if len(row) > 4 else slope for row in stations])
     if not np.all(slopes > 0.0):
         raise PropellerError(f"{path}: CL_a must be above 0; one is {slopes.min():g}")
-    tip, assumed = float(r[-1]), "12 % thick NACA 4-digit sections of the file's zero-lift angle"
+    tip = float(r[-1])
     if tips and tips[0] > 0.0:
         tip = _tip_radius(path, tips[0], factors[0], tip)
-    if tip > r[-1]:
-        assumed += f"; chord and angle of the last station, r/R {r[-1] / tip:.4g}, on to the tip"
-        r = np.append(r, tip)
-        chord, beta, lifts, slopes = (np.append(x, x[-1]) for x in (chord, beta, lifts, slopes))
-    try:
-        propeller = Propeller(
-            name=path.stem,
-            diameter=2.0 * tip,
-            n_blades=int(n_blades),
-            r_over_R=r / tip,
-            c_over_R=chord / tip,
-            beta_deg=beta,
-            airfoils=[(1.0, AIRFOIL)],
-            camber_over_chord=camber_of_zero_lift(-lifts / slopes),
-            source=f"QPROP, {path.name}",
-        )
-    except PropellerError as error:
-        raise PropellerError(f"{path}: {error}") from error
-    warnings.warn(
-        f"{path}: assumed, for the file does not say: {assumed}", AssumedBladeWarning, stacklevel=4
+    described, assumed = blade_by_zero_lift(
+        r / tip, chord / tip, beta, lambda at: np.interp(at, r / tip, -lifts / slopes)
     )
-    return propeller
+    return assumed_propeller(
+        path,
+        assumed,
+        diameter=2.0 * tip,
+        n_blades=int(n_blades),
+        source=f"QPROP, {path.name}",
+        **described,
+    )
 
 
 def _lift(fit: SectionFit) -> str:
@@ -202,9 +188,9 @@ def _tip_radius(path: Path, stated: float, factor: float, last: float) -> float:
     """Tip radius [m] as a file has it, in metres or in the unit of its stations."""
     for radius in (stated, factor * stated):
         # A last station that rounding has put beyond the tip is at it.
-        if (1.0 - 1e-6) * last <= radius <= last / (1.0 - _OPEN_TIP):
+        if (1.0 - 1e-6) * last <= radius <= last / (1.0 - OPEN_TIP):
             return max(radius, last)
     raise PropellerError(
         f"{path}: R, {stated:g}, must be at the last station, {last:g} m, or up to "
-        f"{_OPEN_TIP:.0%} of it beyond"
+        f"{OPEN_TIP:.0%} of it beyond"
     )

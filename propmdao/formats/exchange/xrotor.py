@@ -8,13 +8,12 @@ XROTOR User Guide, 2003). Sections lie at some r/R; between them XROTOR is linea
 from __future__ import annotations
 
 import os
-import warnings
 from pathlib import Path
 
 import numpy as np
 
-from propmdao.formats.blade_tables.assumptions import AssumedBladeWarning
-from propmdao.formats.exchange.naca_sections import AIRFOIL, camber_of_zero_lift
+from propmdao.formats.blade_tables.assumptions import assumed_propeller
+from propmdao.formats.exchange.naca_sections import blade_by_zero_lift
 from propmdao.formats.exchange.section_fits import TIP_MACH, section_fits
 from propmdao.propeller.checks import MOST_STATIONS, PropellerError
 from propmdao.propeller.description import Propeller
@@ -30,8 +29,6 @@ _MOST_SECTIONS = 20
 _STALL_SLOPE, _STALL_RISE, _CRITICAL_MACH = 0.1, 0.1, 0.8
 #: Advance ratio, V over the speed of the tip, of the operating point that the file needs.
 _ADVANCE = 0.1
-#: Part of the radius that may lie beyond the last station.
-_OPEN_TIP = 0.1
 
 
 def write_xrotor(path: str | os.PathLike[str], propeller: Propeller) -> int:
@@ -136,31 +133,19 @@ def read_xrotor(path: str | os.PathLike[str]) -> Propeller:
         raise PropellerError(f"{path}: II must be 2 ... {MOST_STATIONS}; it is {n_stations}")
     table = [lines.numbers(4, "r/R C/R Beta0deg Ubody")[:3] for _ in range(n_stations)]
     r, chord, beta = np.transpose(table)
-    assumed = "12 % thick NACA 4-digit sections of the file's zero-lift angle"
-    if 1.0 - _OPEN_TIP <= r[-1] < 1.0:
-        assumed += f"; chord and angle of the last station, r/R {r[-1]:.4g}, on to the tip"
-        r, chord, beta = np.append(r, 1.0), np.append(chord, chord[-1]), np.append(beta, beta[-1])
+    described, assumed = blade_by_zero_lift(
+        r, chord, beta, lambda at: np.interp(at, positions, np.radians(zero_lift))
+    )
     if rake:
         assumed += f"; no rake, of which the file has {rake:g}"
-    angle = np.interp(r, positions, np.radians(zero_lift))
-    try:
-        propeller = Propeller(
-            name=path.stem,
-            diameter=2.0 * tip,
-            n_blades=n_blades,
-            r_over_R=r,
-            c_over_R=chord,
-            beta_deg=beta,
-            airfoils=[(1.0, AIRFOIL)],
-            camber_over_chord=camber_of_zero_lift(angle),
-            source=f"XROTOR, {path.name}",
-        )
-    except PropellerError as error:
-        raise PropellerError(f"{path}: {error}") from error
-    warnings.warn(
-        f"{path}: assumed, for the file does not say: {assumed}", AssumedBladeWarning, stacklevel=4
+    return assumed_propeller(
+        path,
+        assumed,
+        diameter=2.0 * tip,
+        n_blades=n_blades,
+        source=f"XROTOR, {path.name}",
+        **described,
     )
-    return propeller
 
 
 class _Lines:
