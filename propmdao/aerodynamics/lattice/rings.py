@@ -129,6 +129,13 @@ def segment_circulation(circulation: Array) -> Array:
     return jnp.concatenate([bound.ravel(), (padded[:, :-1] - padded[:, 1:]).ravel()])
 
 
+def spun(vectors: Array, angle: Array) -> Array:
+    """Vectors (..., 3) turned about +z by angles (...) [rad]."""
+    cos, sin = jnp.cos(angle), jnp.sin(angle)
+    x, y, z = jnp.moveaxis(vectors, -1, 0)
+    return jnp.stack([cos * x - sin * y, sin * x + cos * y, z], axis=-1)
+
+
 def turned(points: Array, azimuths: np.ndarray) -> Array:
     """Copies of points (n, 3) of blade 1 on the blades at some azimuths: (n_blades, n, 3)."""
     angle = azimuths[:, None]

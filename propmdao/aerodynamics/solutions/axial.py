@@ -144,10 +144,8 @@ def solve(case: RotorCase, thrust_guess: Scalar = 0.0) -> RotorLoads:
     RotorLoads
         Loads, exactly differentiable in every argument but the guess.
     """
-    rotation_speed = case.state.rotation_speed
-    turning = jnp.asarray(rotation_speed > 0.0)
-    # Where nothing turns, the flow of 1 rad/s stands in, for the shapes.
-    flow = flow_at(case.turning(jnp.where(turning, rotation_speed, 1.0)))
+    turning, moving = case.never_still()
+    flow = flow_at(moving)
     n_blades = case.rotor.n_blades
 
     def evaluate(params: _Params, w: Array) -> LatticeLoads:

@@ -144,10 +144,8 @@ def solve(case: RotorCase) -> RotorLoads:
     RotorLoads
         Loads, exactly differentiable in every argument; forces act at the quarter points.
     """
-    rotation_speed = case.state.rotation_speed
-    turning = jnp.asarray(rotation_speed > 0.0)
-    # Where nothing turns, the flow of 1 rad/s stands in, for the shapes.
-    flow = flow_at(case.turning(jnp.where(turning, rotation_speed, 1.0)))
+    turning, moving = case.never_still()
+    flow = flow_at(moving)
     return unless_still(turning, _rotor_loads(flow, inflow_angles(flow)))
 
 

@@ -6,6 +6,7 @@ import dataclasses
 
 import jax
 import jax.numpy as jnp
+from jax import Array
 
 from propmdao.aerodynamics.rotor_geometry import RotorGeometry
 from propmdao.aerodynamics.sections.laws import ViscousSections
@@ -42,6 +43,12 @@ class RotorCase:
     def turning(self, rotation_speed: Scalar) -> RotorCase:
         """The same case at another rotation speed [rad/s]."""
         return dataclasses.replace(self, state=self.state.turning(rotation_speed))
+
+    def never_still(self) -> tuple[Array, RotorCase]:
+        """Whether the rotor turns, and the case; where nothing turns, at 1 rad/s for the shapes."""
+        rotation_speed = self.state.rotation_speed
+        turning = jnp.asarray(rotation_speed > 0.0)
+        return turning, self.turning(jnp.where(turning, rotation_speed, 1.0))
 
     def in_floats(self) -> RotorCase:
         """The same case with all numbers of its rotor and state as floats."""

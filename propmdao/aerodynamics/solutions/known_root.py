@@ -49,9 +49,8 @@ def solved_at(
     if solver in (blade_element, tilted_elements):
         elements = solver.solve(case)
         return elements, elements.induced_velocity - induced_velocity
-    rotation_speed = case.state.rotation_speed
-    turning = jnp.asarray(rotation_speed > 0.0)
-    flow = solver.flow_at(case.turning(jnp.where(turning, rotation_speed, 1.0)))
+    turning, moving = case.never_still()
+    flow = solver.flow_at(moving)
     w = jnp.asarray(induced_velocity, float)
     loads: Any = _ASSEMBLED[solver](flow, w, solver.loads_at(flow, w))
     residual = jnp.where(turning, solver.induced_velocity(flow, loads.thrust), 0.0) - w

@@ -17,6 +17,7 @@ from functools import partial
 import jax.numpy as jnp
 from jax import Array
 
+from propmdao.aerodynamics.lattice.rings import spun
 from propmdao.aerodynamics.solutions.case import RotorCase
 from propmdao.aerodynamics.solutions.period.flow import (
     TiltedFlow,
@@ -63,10 +64,8 @@ def solve(case: RotorCase, thrust_guess: Scalar = 0.0) -> TiltedLoads:
     TiltedLoads
         Loads, exactly differentiable in every argument but the guess.
     """
-    rotation_speed = case.state.rotation_speed
-    turning = jnp.asarray(rotation_speed > 0.0)
-    # Where nothing turns, the flow of 1 rad/s stands in, for the shapes.
-    flow = flow_at(case.turning(jnp.where(turning, rotation_speed, 1.0)))
+    turning, moving = case.never_still()
+    flow = flow_at(moving)
 
     def evaluate(params: _Params, w: Array) -> PeriodBladeLoads:
         return loads_at(params[0], w)
@@ -167,15 +166,8 @@ def tilted_loads(
     rotor, state = flow.case.rotor, flow.case.state
     w, thrust = induced_velocity_at_disk, mean_thrust(flow, loads)
     psi = jnp.asarray(azimuths_of(loads.circulation.shape[0]))
-
-    def at_rest(vector: Array) -> Array:
-        """Components in the axes that do not turn."""
-        x, y, z = vector.T
-        return jnp.stack(
-            [x * jnp.cos(psi) - y * jnp.sin(psi), x * jnp.sin(psi) + y * jnp.cos(psi), z], axis=1
-        )
-
-    force, moment = at_rest(loads.hub_force), at_rest(loads.hub_moment)
+    # In the axes that do not turn.
+    force, moment = spun(loads.hub_force, psi), spun(loads.hub_moment, psi)
     hub_force, hub_moment = (rotor.n_blades * of_blade.mean(axis=0) for of_blade in (force, moment))
     tip_speed = state.rotation_speed * rotor.radius
     agrees = jnp.abs(induced_velocity(flow, thrust) - w) < 1.0e-6 * tip_speed

@@ -23,6 +23,7 @@ import jax.numpy as jnp
 import numpy as np
 from jax import Array
 
+from propmdao.aerodynamics.lattice.rings import spun
 from propmdao.aerodynamics.vortices.biot_savart import summed_velocities
 from propmdao.aerodynamics.wakes.lags import lag_weights, read
 from propmdao.aerodynamics.wakes.sheets import (
@@ -158,13 +159,6 @@ def placed(
 def _behind(ages: Array, n_blades: int) -> Array:
     """Angles from a blade to where the nodes of each were shed, (n_blades, 1, n_nodes) [rad]."""
     return (2.0 * jnp.pi / n_blades * jnp.arange(n_blades))[:, None, None] - ages
-
-
-def spun(vectors: Array, angle: Array) -> Array:
-    """Vectors (..., 3) turned about +z by angles (...) [rad]."""
-    cos, sin = jnp.cos(angle), jnp.sin(angle)
-    x, y, z = jnp.moveaxis(vectors, -1, 0)
-    return jnp.stack([cos * x - sin * y, sin * x + cos * y, z], axis=-1)
 
 
 def at_ages(values: Array, place: Array) -> Array:

@@ -204,8 +204,10 @@ def youngest_velocities(
     return sheet_velocities(points, sheets.youngest(n_rings + 1), ended, present)
 
 
-def older_velocities(points: Array, sheets: Sheets, parts: WakeParts, ring: Array) -> Array:
-    """Velocity at points by the rings that are not close to the blades.
+def older_velocities(
+    points: Array, sheets: Sheets, n_rings: int, parts: WakeParts, ring: Array
+) -> Array:
+    """Velocity at points by the rings behind those next to the blades.
 
     Parameters
     ----------
@@ -213,20 +215,21 @@ def older_velocities(points: Array, sheets: Sheets, parts: WakeParts, ring: Arra
         Points at which the velocity is wanted [m].
     sheets : Sheets
         Sheets of ns strips behind all blades.
+    n_rings : int
+        Rings that do not act.
     parts : WakeParts
         Parts of the sheets.
     ring : (n_blades, ns, n_rings) array
-        Circulation of their rings [m^2/s].
+        Circulation of all rings [m^2/s].
 
     Returns
     -------
     (3, n_points) array
         Velocity [m/s].
     """
-    n = parts.n_close or 0
-    left = dataclasses.replace(parts, n_near=parts.n_near - n)
+    left = dataclasses.replace(parts, n_near=parts.n_near - n_rings)
     still = jnp.zeros(ring.shape[:2])
-    return wake_velocities(points, sheets.older(n), left, ring[..., n:], still)
+    return wake_velocities(points, sheets.older(n_rings), left, ring[..., n_rings:], still)
 
 
 def sheet_velocities(points: Array, sheets: Sheets, ring: Array, present: Array) -> Array:

@@ -158,10 +158,11 @@ def step_loads(
     seen_known = seen_from_each(known, n_blades)
     still = jnp.zeros((n_blades, ns))
     older = None
-    if parts.n_close is not None:
+    if (n := parts.n_close) is not None:
         lines = period.lines.points
         older = jax.lax.map(
-            lambda place: older_velocities(lines, place[0], parts, place[1]), (sheets, seen_known)
+            lambda place: older_velocities(lines, place[0], n, parts, place[1]),
+            (sheets, seen_known),
         )
 
     def by_rings(points: Array, seen: Sheets, ring: Array, present: Array) -> Array:

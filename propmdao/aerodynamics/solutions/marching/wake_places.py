@@ -12,6 +12,7 @@ from propmdao.aerodynamics.lattice.rings import (
     BOUND_CORE,
     ring_segments,
     segment_circulation,
+    spun,
     turned,
 )
 from propmdao.aerodynamics.solutions.marching.flow import MarchFlow, MarchState
@@ -25,7 +26,6 @@ from propmdao.aerodynamics.wakes.free import (
     law_displacement,
     moved,
     placed,
-    spun,
 )
 from propmdao.aerodynamics.wakes.helical import helical_wake
 from propmdao.aerodynamics.wakes.momentum import (

@@ -31,6 +31,7 @@ import jax.numpy as jnp
 import numpy as np
 from jax import Array
 
+from propmdao.aerodynamics.lattice.rings import spun
 from propmdao.aerodynamics.sections.laws import SectionLaws, section_laws
 from propmdao.aerodynamics.sections.recambering import SectionStates
 from propmdao.aerodynamics.solutions.blade_element import (
@@ -83,10 +84,8 @@ def solve(case: RotorCase) -> TiltedLoads:
     TiltedLoads
         Loads, exactly differentiable in every argument; forces act at the quarter points.
     """
-    rotation_speed = case.state.rotation_speed
-    turning = jnp.asarray(rotation_speed > 0.0)
-    # Where nothing turns, the flow of 1 rad/s stands in, for the shapes.
-    flow = flow_at(case.turning(jnp.where(turning, rotation_speed, 1.0)))
+    turning, moving = case.never_still()
+    flow = flow_at(moving)
     return unless_still(turning, _tilted_loads(flow, _inflow(flow)))
 
 
@@ -302,15 +301,11 @@ def _tilted_loads(flow: BladeElements, inflow: Array) -> TiltedLoads:
     laws, psi, tip_speed = _laws(flow), _psi(flow), _tip_speed(flow)
     air = _air(flow, laws, inflow)
     missing = _missing(flow, laws, inflow)
-
-    def on_hub(vector: Array) -> Array:
-        """Components in the axes that do not turn, of the blade: (n_azimuths, 3)."""
-        x, y, z = vector.sum(axis=1).T
-        cos, sin = jnp.cos(psi[:, 0]), jnp.sin(psi[:, 0])
-        return jnp.stack([x * cos - y * sin, x * sin + y * cos, z], axis=1)
-
     moment = jnp.cross(strips.quarter_chord, air.on_blade)
-    blade_force, blade_moment = on_hub(air.on_blade), on_hub(moment)
+    # In the axes that do not turn.
+    blade_force, blade_moment = (
+        spun(of_strips.sum(axis=1), psi[:, 0]) for of_strips in (air.on_blade, moment)
+    )
     hub_force, hub_moment = (
         rotor.n_blades * of_blade.mean(axis=0) for of_blade in (blade_force, blade_moment)
     )
