@@ -9,6 +9,7 @@ from typing import Any, Protocol
 import jax
 
 from propmdao.runtime.compilation import compiled
+from propmdao.runtime.devices import at_all
 
 Arrays = dict[str, Any]  # of NumPy or JAX, by variable name
 Function = Callable[[Arrays, Any, Any], Arrays]  # of inputs, constants and what is static
@@ -24,7 +25,7 @@ def evaluate(function: Function, static: Hashable, constants: Any, inputs: Array
 @partial(compiled, static_argnums=(0, 1))
 def evaluate_all(function: Function, static: Hashable, constants: Any, inputs: Arrays) -> Arrays:
     """Return the function's values where every input has a leading axis of points, compiled."""
-    return jax.vmap(lambda point: function(point, constants, static))(inputs)
+    return at_all(lambda constants, point: function(point, constants, static), constants, inputs)
 
 
 class Derivatives(Protocol):

@@ -25,7 +25,10 @@ from propmdao.components.bases.refusals import (
     require_numbers,
     require_real,
 )
+from propmdao.runtime.compilation import memory_of
+from propmdao.runtime.devices import stacked
 from propmdao.runtime.finite import Axis
+from propmdao.runtime.side_by_side import side_by_side
 
 
 class JaxComponent(om.ExplicitComponent):
@@ -152,11 +155,44 @@ class JaxComponent(om.ExplicitComponent):
         iterable of mappings
             What the function returns at each point.
         """
-        batch = [*points, *[points[-1]] * (batch_size - len(points))]
-        inputs = {name: np.stack([point[name] for point in batch]) for name in points[0]}
+        if not self.in_one_call():
+            return side_by_side(self.found_at, points)
         function, constants = self.evaluated()
+        inputs = stacked(points, batch_size)
         values = jax.device_get(evaluate_all(function, self.static, constants, inputs))
         return (jax.tree.map(itemgetter(place), values) for place in range(len(points)))
+
+    def batch_memory(self, batch_size: int) -> int:
+        """Memory that `evaluate_designs` takes on each device, by the code that is compiled for it.
+
+        Parameters
+        ----------
+        batch_size : int
+            Number of designs that the code is compiled for.
+
+        Returns
+        -------
+        int
+            Bytes; 0 where designs are not evaluated in one call.
+        """
+        return self._points_memory(copied(self._inputs), batch_size)
+
+    def _points_memory(self, point: Arrays, batch_size: int) -> int:
+        if not self.in_one_call():
+            return 0
+        function, constants = self.evaluated()
+        inputs = stacked([point], batch_size)
+        return memory_of(evaluate_all, function, self.static, constants, inputs)
+
+    def in_one_call(self) -> bool:
+        """Whether several points are evaluated in one call of the compiled function.
+
+        Returns
+        -------
+        bool
+            True, unless a subclass knows better.
+        """
+        return True
 
     def n_points(self) -> int:
         """Number of points that the component works at before it comes back to the first.

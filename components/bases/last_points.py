@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import threading
 from collections import deque
 from collections.abc import Callable
 from typing import Generic, TypeVar
@@ -12,11 +13,15 @@ from propmdao.components.bases.array_function import Arrays
 
 Result = TypeVar("Result")
 
+#: Held while the results of points are looked up or kept; one for all, for components are copied.
+_LOCK = threading.Lock()
+
 
 class LastPoints(Generic[Result]):
     """A function of a point that remembers its results for the last points it was called with.
 
     Points are the same where all values are equal to the last bit: nothing stale is ever returned.
+    It may be called at several points at once, on threads.
 
     Parameters
     ----------
@@ -32,13 +37,16 @@ class LastPoints(Generic[Result]):
 
     def __call__(self, inputs: Arrays) -> Result:
         """Return the function's result, computed where the inputs are not those of a last point."""
-        for point, result in self._results:
+        with _LOCK:
+            known = tuple(self._results)
+        for point, result in known:
             if _same(point, inputs):
                 return result
         result = self._function(inputs)
-        self._results.append((inputs, result))
-        while len(self._results) > self._n_points():
-            self._results.popleft()
+        with _LOCK:
+            self._results.append((inputs, result))
+            while len(self._results) > self._n_points():
+                self._results.popleft()
         return result
 
 

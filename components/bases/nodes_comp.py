@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
@@ -12,6 +13,7 @@ from openmdao.utils.options_dictionary import OptionsDictionary
 from propmdao.components.bases.array_function import Arrays, Derivatives, Shapes
 from propmdao.components.bases.jax_component import JaxComponent, complete_seeds, copied
 from propmdao.components.bases.refusals import require_finite_products, require_real
+from propmdao.runtime.side_by_side import side_by_side
 
 #: Tells Dymos that an input has no axis of nodes.
 STATIC = ["dymos.static_target"]
@@ -41,9 +43,10 @@ class NodesComp(JaxComponent):
 
     A subclass declares with `add_point_input` and `add_point_output` what belongs to an operating
     point, with OpenMDAO's own methods inputs that all of them share and outputs that never change.
-    Its ``function`` knows of one point only. The points are gone through one by one: the compiled
-    code is that of one point, whatever their number, so is the memory of an evaluation, and a point
-    that no seed touches is not differentiated. A point that is differentiated keeps its
+    Its ``function`` knows of one point only. The points share the cores of the processor, one each:
+    the compiled code is that of one point, whatever their number, so is the memory of an
+    evaluation, and a point that no seed touches is not differentiated. A point that is
+    differentiated keeps its
     linearisation until its inputs change; where all its outputs are scalars and vectors in space,
     their gradients alone: missions ask for many products at the same points.
 
@@ -102,14 +105,15 @@ class NodesComp(JaxComponent):
 
     def compute(self, inputs: Any, outputs: Any) -> None:
         require_real(self)
-        for node, point in self._points(inputs):
-            try:
-                values = self._at_rest(point) or self.values_at(point)
-            except om.AnalysisError as error:
-                self._name_node(node, error)
-                raise
+        for node, values in enumerate(side_by_side(self._at_node, self._points(inputs))):
             for name in self._output_shapes:
                 self._view(node, name, outputs)[:] = values[name]
+
+    def _at_node(self, node_and_point: tuple[int, Arrays]) -> Mapping[str, Any]:
+        """Values at a node's point."""
+        node, point = node_and_point
+        with self._naming(node):
+            return self._at_rest(point) or self.values_at(point)
 
     def evaluate_designs(
         self, designs: Sequence[Arrays], batch_size: int
@@ -121,6 +125,10 @@ class NodesComp(JaxComponent):
         evaluated = iter(self._evaluate_points(moving, batch_size * n))
         values = [next(evaluated) if rest is None else rest for rest in resting]
         return [self._together(values[i : i + n]) for i in range(0, len(values), n)]
+
+    def batch_memory(self, batch_size: int) -> int:
+        _, point = next(self._points(self._inputs))
+        return self._points_memory(point, batch_size * self.n_points())
 
     def _at_rest(self, point: Arrays) -> Arrays | None:
         """Zeros for all outputs where nothing moves, inputs checked; None where something does."""
@@ -151,24 +159,37 @@ class NodesComp(JaxComponent):
         if self.options["num_nodes"] is not None:
             error.args = (f"node {node}: {error}",)
 
+    @contextlib.contextmanager
+    def _naming(self, node: int) -> Iterator[None]:
+        """Put the node into the message of an error that is raised."""
+        try:
+            yield
+        except om.AnalysisError as error:
+            self._name_node(node, error)
+            raise
+
     def compute_jacvec_product(self, inputs: Any, d_inputs: Any, d_outputs: Any, mode: str) -> None:
         require_real(self)
         start, end = (d_inputs, d_outputs) if mode == "fwd" else (d_outputs, d_inputs)
         all_seeds = copied(start)
+        touched: list[tuple[int, Arrays, Arrays]] = []
         for node, point in self._points(inputs):
             node_seeds = {name: self._view(node, name, all_seeds) for name in all_seeds}
             input_shapes = {name: value.shape for name, value in point.items()}
             shapes = input_shapes if mode == "fwd" else self._output_shapes
             seeds = complete_seeds(node_seeds, shapes)
-            if self.at_rest(point) or not any(seed.any() for seed in seeds.values()):
-                continue
+            if any(seed.any() for seed in seeds.values()) and not self.at_rest(point):
+                touched.append((node, point, seeds))
+
+        def products_at(node_and_seeds: tuple[int, Arrays, Arrays]) -> Mapping[str, Any]:
+            node, point, seeds = node_and_seeds
             derivatives = self._linearised(point)
             products = (derivatives.forward if mode == "fwd" else derivatives.reverse)(seeds)
-            try:
+            with self._naming(node):
                 require_finite_products(products, seeds)
-            except om.AnalysisError as error:
-                self._name_node(node, error)
-                raise
+            return products
+
+        for (node, *_), products in zip(touched, side_by_side(products_at, touched), strict=True):
             for name in end:
                 if name in products:  # outputs that never change have none
                     self._view(node, name, end)[:] += products[name]

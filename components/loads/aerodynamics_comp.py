@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping
 from typing import Any
 
 import openmdao.api as om
@@ -190,12 +190,8 @@ class AerodynamicsComp(NodesComp, RootComponent):
         searched = self._search_constants(constants)
         return {**evaluate(self.search, self.static, searched, inputs), "constants": constants}
 
-    def found_at_all(
-        self, points: Sequence[Arrays], batch_size: int
-    ) -> Iterable[Mapping[str, Any]]:
-        if not self._has_tilted_wake():
-            return super().found_at_all(points, batch_size)
-        return map(self.found_at, points)  # each in the wake of its own length
+    def in_one_call(self) -> bool:
+        return not self._has_tilted_wake()  # which is of its own length at each point
 
     def at_rest(self, inputs: Arrays) -> bool:
         return not inputs["rpm"].any()

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import warnings
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
@@ -133,10 +133,8 @@ class MarchedAerodynamicsComp(NodesComp):
     def found_at(self, inputs: Arrays) -> Mapping[str, Any]:
         return self._marched(inputs, self._wake_at(inputs))
 
-    def found_at_all(
-        self, points: Sequence[Arrays], batch_size: int
-    ) -> Iterable[Mapping[str, Any]]:
-        return map(self.found_at, points)
+    def in_one_call(self) -> bool:
+        return False
 
     def check(self, inputs: Any, values: Any) -> None:
         self.require_numbers(inputs, values)

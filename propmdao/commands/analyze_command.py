@@ -195,19 +195,16 @@ def _analyze(options: argparse.Namespace) -> None:
     motor = motor_of(options)
     listening = listening_of(options, options.incidence_deg)
     _check_observers(options, len(listening.observers))
-    asked = asked_of(options) | air_of(options) | {"listening": listening}
+    asked = asked_of(options) | air_of(options)
     points = [asked | {"rpm": rpm} for rpm in _rpm_values(options.rpm)]
     # Slow to import, so only once the arguments are known to be good.
     from propmdao.analysis.request import Request
 
-    requests = [
-        Request.of({"listening": listening}, **{k: v for k, v in point.items() if k in ASKED})
-        for point in points
-    ]
+    requests = [Request.of({"listening": listening}, **point) for point in points]
     transition = requests[0].model.loads.transition
     from propmdao.aerodynamics.sections.polars.propeller_polars import polars_for
     from propmdao.aerodynamics.sections.polars.sources import polar_sources
-    from propmdao.analysis.single_point import analyze
+    from propmdao.analysis.sweeping.batches import analyze_each
     from propmdao.formats.propellers import load_propeller
 
     with warning_lines("analyze"):
@@ -224,7 +221,8 @@ def _analyze(options: argparse.Namespace) -> None:
         drag = options.measured_drag
         polars = polars_for(propeller, own, transition, drag) if options.viscous else None
         shown: dict[str, Any] = {"progress": progress_line()} if options.unsteady else {}
-        analyses = [analyze(propeller, polars=polars, **shown, **point) for point in points]
+        outcomes = analyze_each(propeller, requests, polars=polars, **shown)
+        analyses = [outcome.said() for outcome in outcomes]
     if polars is not None:
         files = {airfoil: ", ".join(names) for airfoil, *names in options.polar}
         sources = polar_sources(propeller, own, transition, drag)

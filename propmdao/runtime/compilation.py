@@ -53,23 +53,58 @@ def compiled(
     as_part = jax.jit(function, **static)
 
     @cache
-    def alone() -> Callable[..., _Result]:
+    def alone() -> Any:
         return jax.jit(function, compiler_options=_options(), **static)
 
     parameters = list(inspect.signature(function).parameters)
     names = {static_argnames} if isinstance(static_argnames, str) else set(static_argnames or ())
     names |= {parameters[place] for place in static_argnums or ()}
 
+    def of_one_type(
+        args: tuple[Any, ...], named: dict[str, Any]
+    ) -> tuple[list[Any], dict[str, Any]]:
+        places = zip_longest(parameters[: len(args)], args)  # *args of a function have no names
+        return (
+            [a if k in names else _of_one_type(a) for k, a in places],
+            {k: a if k in names else _of_one_type(a) for k, a in named.items()},
+        )
+
     @wraps(function)
     def call(*args: _Parameters.args, **kwargs: _Parameters.kwargs) -> _Result:
         if _place_in_traces() != _OUTSIDE:
             return as_part(*args, **kwargs)
-        places = zip_longest(parameters[: len(args)], args)  # *args of a function have no names
-        positional = [a if k in names else _of_one_type(a) for k, a in places]
-        named = {k: a if k in names else _of_one_type(a) for k, a in kwargs.items()}
-        return alone()(*positional, **named)
+        positional, named = of_one_type(args, kwargs)
+        result: _Result = alone()(*positional, **named)
+        return result
 
+    def lower(*args: Any, **kwargs: Any) -> Any:
+        positional, named = of_one_type(args, kwargs)
+        return alone().lower(*positional, **named)
+
+    vars(call)["lower"] = lower  # for `memory_of`
     return call
+
+
+def memory_of(function: Callable[..., Any], *args: Any) -> int:
+    """Memory that a call of a compiled function takes on each device.
+
+    Parameters
+    ----------
+    function : callable
+        What `compiled` has returned.
+    *args
+        Arguments that it is compiled for; nothing is computed.
+
+    Returns
+    -------
+    int
+        Bytes of arguments, results and all that is between [B].
+    """
+    program = vars(function)["lower"](*args).compile()
+    memory = program.memory_analysis()
+    return int(
+        memory.argument_size_in_bytes + memory.output_size_in_bytes + memory.temp_size_in_bytes
+    )
 
 
 def _of_one_type(argument: Any) -> Any:

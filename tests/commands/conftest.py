@@ -6,13 +6,14 @@ import dataclasses
 import importlib
 import sys
 import types
-from collections.abc import Callable
+from collections.abc import Callable, Iterator, Sequence
 from typing import Any
 
 import pytest
 
 from propmdao.acoustics.kinematics.observers import directions
 from propmdao.analysis.request import Request
+from propmdao.analysis.sweeping.outcomes import Outcome
 from propmdao.commands.program import main
 from propmdao.propeller.description import Propeller
 
@@ -66,7 +67,7 @@ class Answer:
 
 
 class Recorder:
-    """In place of `propmdao.analyze`: keeps what it was asked, answers at once."""
+    """In place of `propmdao.analyze` at one point or several: keeps what it was asked."""
 
     def __init__(self) -> None:
         self.asked: list[Request] = []
@@ -81,6 +82,15 @@ class Recorder:
         self.polars.append(polars)
         return Answer(propeller, request)
 
+    def analyze_each(
+        self, propeller: Propeller, asked: Sequence[Any], *, polars: Any = None, **_: Any
+    ) -> Iterator[Outcome[Any]]:
+        for point in asked:
+            request = point if isinstance(point, Request) else Request.of(**point)
+            self.asked.append(request)
+            self.polars.append(polars)
+            yield Outcome(Answer(propeller, request), [])
+
 
 @pytest.fixture
 def polar_text() -> str:
@@ -93,8 +103,9 @@ def polar_text() -> str:
 @pytest.fixture
 def recorder(monkeypatch: pytest.MonkeyPatch) -> Recorder:
     # What takes more from the module than `analyze` has to have it before it is replaced.
-    importlib.import_module("propmdao.analysis.sweeping.batches")
+    batches = importlib.import_module("propmdao.analysis.sweeping.batches")
     recorder = Recorder()
+    monkeypatch.setattr(batches, "analyze_each", recorder.analyze_each)
     module = types.SimpleNamespace(analyze=recorder.analyze)
     monkeypatch.setitem(sys.modules, "propmdao.analysis.single_point", module)
     return recorder

@@ -16,6 +16,7 @@ from propmdao.components.drivers.evaluation.model_run import (
     failure_message,
     record_run,
 )
+from propmdao.runtime.devices import free_memory
 
 
 class _Transfer(NamedTuple):
@@ -44,21 +45,35 @@ class DesignBatches:
     model : om.Group
         Model of a Problem after its final setup.
     at_once : int
-        Designs in a batch. Memory grows with it, and code is compiled for just this number.
+        Designs in a batch, shared out to all devices. Memory grows with it, and code is compiled
+        for just this number.
+
+    Attributes
+    ----------
+    memory : int
+        Bytes that a batch takes on each device, by the compiled code.
 
     Raises
     ------
     ValueError
-        When there is no `JaxComponent` outside of groups that iterate.
+        When there is no `JaxComponent` outside of groups that iterate, or a device has not the
+        memory for so many designs.
     """
 
     def __init__(self, model: om.Group, at_once: int) -> None:
         self._model, self._at_once = model, at_once
         self._steps = list(_steps(model, ()))
-        if not any(isinstance(step.subsystem, JaxComponent) for step in self._steps):
+        components = [s.subsystem for s in self._steps if isinstance(s.subsystem, JaxComponent)]
+        if not components:
             raise ValueError(
                 f"designs_at_once is {at_once}, but the model has no component that evaluates"
                 " several designs at once: none of JAX outside of groups that iterate"
+            )
+        self.memory = max(component.batch_memory(at_once) for component in components)
+        if self.memory > (free := free_memory()):
+            raise ValueError(
+                f"designs_at_once {at_once} needs {self.memory / 2**30:.3g} GiB on a device, and"
+                f" {free / 2**30:.3g} GiB are free: {free * at_once // self.memory} designs fit"
             )
 
     def run(self, starts: Iterable[Array]) -> Iterator[ModelRun]:

@@ -1,22 +1,24 @@
-"""A propeller at several points: what they share is done once, blade elements in one call."""
+"""A propeller at several points: what they share is done once, many in one call or on all cores."""
 
 from __future__ import annotations
 
 import dataclasses
-import warnings
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from functools import partial
 from operator import itemgetter
-from typing import Any, Generic, NamedTuple, ParamSpec, TypeVar
+from typing import Any, NamedTuple
 
 import jax
-import numpy as np
 
 from propmdao.acoustics.kinematics.limits import require_subsonic_tip
-from propmdao.aerodynamics.solutions import blade_element
+from propmdao.aerodynamics.sections.polars.family import SectionPolars
+from propmdao.aerodynamics.solutions import axial, blade_element
 from propmdao.aerodynamics.solutions.case import RotorCase
+from propmdao.aerodynamics.solutions.marching.marched_loads import Progress
 from propmdao.aerodynamics.solutions.result import RotorLoads
 from propmdao.aerodynamics.trim import (
     Bounds,
+    Solver,
     Trimmed,
     require_bounds,
     require_reached,
@@ -28,191 +30,225 @@ from propmdao.analysis.elastic.modelled_blade import HeldBlade, ModelledBlade
 from propmdao.analysis.request import Asked, Request
 from propmdao.analysis.results import Analysis
 from propmdao.analysis.single_point import analysis_of, require_analysable
+from propmdao.analysis.sweeping.outcomes import Outcome, hearing_warnings, outcome_of
 from propmdao.propeller.changes import Change
 from propmdao.propeller.description import Propeller
 from propmdao.records.models import Model
 from propmdao.records.states import OperatingPoint, RotorState
 from propmdao.runtime.compilation import compiled
+from propmdao.runtime.devices import at_all, is_accelerated, stacked
+from propmdao.runtime.side_by_side import n_cores, side_by_side
 
-#: Points that blade elements are solved for in one compiled call; fewer are filled up.
+#: Points that are solved for in one compiled call; fewer are filled up.
 BATCH_SIZE = 64
-
-Result = TypeVar("Result")
-Given = ParamSpec("Given")
+_SHORT_POINTS = 8  # in axial flight, that a core has in a row
 
 
-class Outcome(NamedTuple, Generic[Result]):
-    """What has become of a point.
-
-    Attributes
-    ----------
-    result : Analysis or Exception
-        The analysis, or why there is none.
-    warnings : list of str
-        What was warned of, each once.
-    """
-
-    result: Result | Exception
-    warnings: list[str]
-
-
-def analyze_each(propeller: Propeller, asked: Sequence[Asked]) -> Iterator[Outcome[Analysis]]:
+def analyze_each(
+    propeller: Propeller,
+    asked: Sequence[Asked | Request],
+    *,
+    polars: SectionPolars | None = None,
+    progress: Progress | None = None,
+) -> Iterator[Outcome[Analysis]]:
     """Analyse a propeller at several points, as `propmdao.analyze` does at one.
 
     The blade of each change is made ready once. Blade elements of a blade are solved for at all
-    points in one call, the lattice at one point after the other: together it takes as long.
+    points in one call; by the lattice each core has a point of its own, and an accelerator all of
+    them. Marches in time go one after the other, for the wakes of each fill memory.
 
     Parameters
     ----------
     propeller : Propeller
         The described blade.
-    asked : sequence of dict
-        Single values of each point; blades and loads of all are held until the last is done.
+    asked : sequence of dict or Request
+        Single values of each point, or what they make; blades and loads of all are held until the
+        last is done.
+    polars : SectionPolars, optional
+        Polars by `polars_for`, for tables of one's own; by default the catalogue's.
+    progress : callable, optional
+        Called after every step of a march in time, with a `MarchProgress`.
 
     Yields
     ------
     Outcome
         What has become of each point, in their order; none of them raises.
     """
-    requests = [_caught(_request, propeller, values) for values in asked]
-    places: dict[tuple[Change, Model], list[int]] = {}
-    for place, (request, _) in enumerate(requests):
-        if isinstance(request, Request):
-            places.setdefault((request.change, request.model), []).append(place)
-    blades: dict[tuple[Change, Model], Outcome[ModelledBlade]] = {}
-    known: dict[int, Solved | Exception] = {}
-    for place, (request, of_request) in enumerate(requests):
+    with hearing_warnings():
+        requests = [outcome_of(_request, propeller, values) for values in asked]
+        places: dict[tuple[Change, Model], list[int]] = {}
+        for place, (request, _) in enumerate(requests):
+            if isinstance(request, Request):
+                places.setdefault((request.change, request.model), []).append(place)
+        made = side_by_side(lambda key: outcome_of(_blade, propeller, *key, polars), places)
+        blades = dict(zip(places, made, strict=True))
+        known: dict[int, Solved | Exception] = {}
+        for key, of_one in places.items():
+            known |= _known(blades[key].result, {k: requests[k].result for k in of_one})
+
+    def finished(place: int) -> Outcome[Analysis]:
+        request, of_request = requests[place]
         if isinstance(request, Exception):
-            yield Outcome(request, of_request)
-            continue
-        key = request.change, request.model
-        if key not in blades:
-            blades[key] = _caught(ModelledBlade.of, propeller, *key)
-            known |= _known(blades[key].result, {k: requests[k].result for k in places[key]})
-        modelled, of_blade = blades[key]
+            return Outcome(request, of_request)
+        modelled, of_blade = blades[request.change, request.model]
         if isinstance(modelled, Exception):
-            yield Outcome(modelled, [*of_request, *of_blade])
-            continue
-        result, of_point = _caught(_analysis, modelled, request, known.get(place))
-        yield Outcome(result, list(dict.fromkeys([*of_request, *of_blade, *of_point])))
+            return Outcome(modelled, [*of_request, *of_blade])
+        solved = known.get(place)
+        result, of_point = outcome_of(_analysis, modelled, request, solved, progress)
+        return Outcome(result, list(dict.fromkeys([*of_request, *of_blade, *of_point])))
+
+    n = _n_at_once([request for request, _ in requests if isinstance(request, Request)])
+    for first in range(0, len(requests), n):
+        with hearing_warnings():
+            outcomes = side_by_side(finished, range(len(requests))[first : first + n])
+        yield from outcomes
+
+
+def _n_at_once(requests: Sequence[Request]) -> int:
+    """Points after which those that are done are handed over.
+
+    Many where they are short, lest a core waits for another; who stops loses few where not.
+    """
+    if any(request.model.loads.unsteady is not None for request in requests):
+        return 1
+    short = all(request.point.incidence_deg == 0.0 for request in requests)
+    return n_cores() * (_SHORT_POINTS if short else 1)
 
 
 def _known(
     modelled: ModelledBlade | Exception, requests: Mapping[int, Any]
 ) -> dict[int, Solved | Exception]:
-    """Loads that are solved for together, those of blade elements, by the place of the point."""
+    """Loads that are solved for together, by the place of the point.
+
+    Those of blade elements: a point is too small to fill a core. Of the lattice on an accelerator
+    alone: on a processor a batch leaves the caches, and takes longer than its points.
+    """
     if isinstance(modelled, Exception):
         return {}
     loads = modelled.model.loads
-    if not loads.blade_element or loads.elastic is not None:
+    if loads.elastic is not None or loads.unsteady is not None:
         return {}
-    # Those at an incidence take so long each that nothing is gained.
-    points = {k: r.point for k, r in requests.items() if r.point.incidence_deg == 0.0}
-    return dict(zip(points, _solved(modelled.unloaded, [*points.values()]), strict=True))
+    if not loads.blade_element and not is_accelerated():
+        return {}
+    solver = blade_element if loads.blade_element else axial
+    known: dict[int, Solved | Exception] = {}
+    for solve, has_thrust in ((_at_rpm, False), (_at_thrust, True)):
+        # Those at an incidence take so long each that nothing is gained.
+        points = {
+            place: request.point
+            for place, request in requests.items()
+            if request.point.incidence_deg == 0.0
+            and (request.point.thrust is not None) == has_thrust
+        }
+        solved = _in_batches(partial(solve, solver, modelled.unloaded), [*points.values()])
+        known |= zip(points, solved, strict=True)
+    return known
 
 
-def _caught(
-    function: Callable[Given, Result], *args: Given.args, **kwargs: Given.kwargs
-) -> Outcome[Result]:
-    """Result of a function, or the exception that it raises, and its warnings."""
-    result: Result | Exception
-    with warnings.catch_warnings(record=True) as caught:
-        warnings.simplefilter("always")
-        try:
-            result = function(*args, **kwargs)
-        except Exception as error:  # a survey of thousands of points does not end at one of them
-            result = error
-    said = dict.fromkeys(" ".join(str(warning.message).split()) for warning in caught)
-    return Outcome(result, list(said))
+def _blade(
+    propeller: Propeller, change: Change, model: Model, polars: SectionPolars | None
+) -> ModelledBlade:
+    """Make a blade ready, with its meshes, before several threads ask for them."""
+    modelled = ModelledBlade.of(propeller, change, model, polars)
+    _ = modelled.unloaded
+    return modelled
 
 
-def _request(propeller: Propeller, values: Asked) -> Request:
-    request = Request.of(**values).completed(propeller)
+def _request(propeller: Propeller, asked: Asked | Request) -> Request:
+    request = asked if isinstance(asked, Request) else Request.of(**asked)
+    request = request.completed(propeller)
     require_analysable(propeller, request)
     return request
 
 
 def _analysis(
-    modelled: ModelledBlade, request: Request, solved: Solved | Exception | None
+    modelled: ModelledBlade,
+    request: Request,
+    solved: Solved | Exception | None,
+    progress: Progress | None,
 ) -> Analysis:
     if isinstance(solved, Exception):
         raise solved
-    return analysis_of(modelled, request, solved)
+    return analysis_of(modelled, request, solved, progress)
 
 
-def _solved(held: HeldBlade, points: Sequence[OperatingPoint]) -> list[Solved | Exception]:
-    """Loads of the blade elements of a blade at several points, or why a point has none."""
-    radius = float(held.rotor.radius)
+def _in_batches(
+    solve: Callable[[Sequence[OperatingPoint]], list[Solved | Exception]],
+    points: Sequence[OperatingPoint],
+) -> list[Solved | Exception]:
+    """Loads of a blade at several points, or why a point has none."""
     results: list[Solved | Exception] = []
     for first in range(0, len(points), BATCH_SIZE):
-        batch = points[first : first + BATCH_SIZE]
-        filled = [*batch, *[batch[-1]] * (BATCH_SIZE - len(batch))]
-        solve = _at_rpm if batch[0].thrust is None else _at_thrust
-        results += solve(held, filled, radius)[: len(batch)]
+        results += solve(points[first : first + BATCH_SIZE])
     return results
 
 
 def _at_rpm(
-    held: HeldBlade, points: Sequence[OperatingPoint], radius: float
+    solver: Solver, held: HeldBlade, points: Sequence[OperatingPoint]
 ) -> list[Solved | Exception]:
+    radius = float(held.rotor.radius)
     states = [point.at(point.rotation_speed or 0.0) for point in points]
-    loads = _each(_solve_all(held.case(points[0]), _stacked(states)))
+    case = held.case(points[0])
+    loads = _each(_solve_all(solver, case, stacked(states, BATCH_SIZE)), len(points))
 
     def solved(point: OperatingPoint, state: RotorState, loads: RotorLoads) -> Solved:
         require_subsonic_tip(radius, state)
         return held.solved(held.case(point), loads, state)
 
     every = zip(points, states, loads, strict=True)
-    return [_caught(solved, *of_point).result for of_point in every]
+    return [outcome_of(solved, *of_point).result for of_point in every]
 
 
 def _at_thrust(
-    held: HeldBlade, points: Sequence[OperatingPoint], radius: float
+    solver: Solver, held: HeldBlade, points: Sequence[OperatingPoint]
 ) -> list[Solved | Exception]:
+    radius = float(held.rotor.radius)
     bounds = [rotation_bounds(radius, float(point.speed)) for point in points]
-    states, thrusts = [point.at(0.0) for point in points], [float(p.thrust or 0.0) for p in points]
-    every_trim = _trim_all(
-        held.case(points[0]), _stacked(states), np.array(thrusts), _stacked(bounds)
-    )
+    searches = [
+        _Search(point.at(0.0), float(point.thrust or 0.0), within)
+        for point, within in zip(points, bounds, strict=True)
+    ]
+    case = held.case(points[0])
+    every_trim = _trim_all(solver, case, stacked(searches, BATCH_SIZE))
 
     def solved(point: OperatingPoint, within: Bounds, trimmed: Trimmed) -> Solved:
         require_bounds(within, float(point.speed))
         case = held.case(point)
-        require_reached(trimmed, blade_element, case, point.thrust or 0.0, within)
+        require_reached(trimmed, solver, case, point.thrust or 0.0, within)
         return held.solved(case, trimmed.loads, point.at(float(trimmed.rotation_speed)))
 
-    every = zip(points, bounds, _each(every_trim), strict=True)
-    return [_caught(solved, *of_point).result for of_point in every]
+    every = zip(points, bounds, _each(every_trim, len(points)), strict=True)
+    return [outcome_of(solved, *of_point).result for of_point in every]
 
 
-def _stacked(records: Sequence[Any]) -> Any:
-    """Pytree of arrays with a leading axis of records."""
-    return jax.tree.map(lambda *values: np.array(values, dtype=float), *records)
+class _Search(NamedTuple):
+    """What the search for a rotation speed is about at a point."""
+
+    state: RotorState
+    thrust: float
+    bounds: Bounds
 
 
-def _each(stacked: Any) -> list[Any]:
+def _each(together: Any, n_points: int) -> list[Any]:
     """Records of a pytree of arrays with a leading axis."""
-    values = jax.device_get(stacked)
-    return [jax.tree.map(itemgetter(place), values) for place in range(BATCH_SIZE)]
+    values = jax.device_get(together)
+    return [jax.tree.map(itemgetter(place), values) for place in range(n_points)]
 
 
-@compiled
-def _solve_all(case: RotorCase, states: RotorState) -> RotorLoads:
-    """Loads by blade elements in states that have a leading axis."""
-
-    def solve(state: RotorState) -> RotorLoads:
-        return blade_element.solve(dataclasses.replace(case, state=state))
-
-    return jax.vmap(solve)(states)
+@partial(compiled, static_argnames="solver")
+def _solve_all(solver: Solver, case: RotorCase, states: RotorState) -> RotorLoads:
+    """Loads in states that have a leading axis."""
+    return at_all(
+        lambda case, state: solver.solve(dataclasses.replace(case, state=state)), case, states
+    )
 
 
-@compiled
-def _trim_all(case: RotorCase, states: RotorState, thrusts: Any, bounds: Bounds) -> Trimmed:
-    """Rotation speeds for thrusts in states that have a leading axis, by blade elements."""
+@partial(compiled, static_argnames="solver")
+def _trim_all(solver: Solver, case: RotorCase, searches: _Search) -> Trimmed:
+    """Rotation speeds for thrusts of searches that have a leading axis."""
 
-    def trimmed(state: RotorState, thrust: Any, bounds: Bounds) -> Trimmed:
-        return solve_for_thrust(
-            blade_element, dataclasses.replace(case, state=state), thrust, bounds
-        )
+    def trimmed(case: RotorCase, search: _Search) -> Trimmed:
+        moved = dataclasses.replace(case, state=search.state)
+        return solve_for_thrust(solver, moved, search.thrust, search.bounds)
 
-    return jax.vmap(trimmed)(states, thrusts, bounds)
+    return at_all(trimmed, case, searches)

@@ -11,7 +11,7 @@ from typing import Any
 import pytest
 
 from propmdao.analysis.request import Request
-from propmdao.analysis.sweeping.batches import Outcome
+from propmdao.analysis.sweeping.outcomes import Outcome
 from propmdao.formats.propellers import load_propeller
 from propmdao.propeller.description import Propeller
 

@@ -8,6 +8,8 @@ import numpy as np
 import pytest
 
 import propmdao as pm
+from propmdao.aerodynamics.solutions import axial
+from propmdao.analysis.request import Request
 from propmdao.analysis.results import Analysis
 from propmdao.analysis.sweeping import batches
 from propmdao.analysis.sweeping.batches import analyze_each
@@ -58,8 +60,46 @@ def test_failures_are_of_their_points() -> None:
     assert "tip Mach number must be below 1" in str(outcome.result)
 
 
+def test_rotation_speeds_and_thrusts_may_be_mixed() -> None:
+    """And requests with single values; each in the call of its kind."""
+    asked: list[Any] = [
+        {"thrust": 1.0, "speed": 4.0, **ELEMENTS},
+        Request.of(rpm=4000.0, **ELEMENTS),
+        {"thrust": 2.0, "speed": 4.0, **ELEMENTS},
+    ]
+    first, second, third = (outcome.said() for outcome in analyze_each(PROPELLER, asked))
+    assert [float(a.loads.thrust) for a in (first, third)] == pytest.approx([1.0, 2.0])
+    assert second.rpm == 4000.0
+
+
+@pytest.mark.slow  # it compiles the lattice twice
+@pytest.mark.parametrize(
+    "drive", [{"rpm": (3000.0, 5000.0, 4e5)}, {"thrust": (1.0, 2.0, 500.0)}], ids=["rpm", "thrust"]
+)
+def test_the_lattice_on_an_accelerator_goes_in_one_call(
+    monkeypatch: pytest.MonkeyPatch, drive: dict[str, tuple[float, ...]]
+) -> None:
+    """With the numbers and the failures of points that are solved for alone."""
+    ((name, values),) = drive.items()
+    asked: list[Any] = [{name: value, "speed": 4.0, **SMALL} for value in values]
+    alone = list(analyze_each(PROPELLER, asked))
+    calls = []
+    monkeypatch.setattr(batches, "is_accelerated", lambda: True)
+    monkeypatch.setattr(batches, "BATCH_SIZE", 4)
+    for solve in ("_solve_all", "_trim_all"):
+        function = getattr(batches, solve)
+        monkeypatch.setattr(
+            batches, solve, lambda *args, f=function: (calls.append(args[0]), f(*args))[1]
+        )
+    together = list(analyze_each(PROPELLER, asked))
+    assert calls == [axial]
+    for one, other in zip(together[:2], alone[:2], strict=True):
+        np.testing.assert_allclose(numbers(one.result), numbers(other.result), rtol=1e-8)
+    assert str(together[2].result) == str(alone[2].result) != ""
+
+
 def test_a_blade_is_made_ready_once(monkeypatch: pytest.MonkeyPatch) -> None:
-    """By the lattice, too, whose points are solved for one after the other."""
+    """By the lattice, too, whose points are solved for one by one."""
     made = []
     of = batches.ModelledBlade.of
 

@@ -13,6 +13,7 @@ from propmdao.acoustics.kinematics.observers import arc
 from propmdao.components import DifferentialEvolutionDriver, PropellerGroup, SweepDriver
 from propmdao.components.bases.jax_component import JaxComponent
 from propmdao.components.bases.nodes_comp import NodesComp
+from propmdao.components.drivers.evaluation import design_batches
 from propmdao.components.drivers.evaluation.design_batches import DesignBatches
 
 ROUNDING = 1e-9  # of sums in another order, and searches that end a step earlier or later
@@ -111,6 +112,15 @@ def alone(prob, start):
     except om.AnalysisError as error:
         failure = str(error)
     return outputs_of(prob).asarray(copy=True), failure
+
+
+def test_what_does_not_fit_is_refused_before_the_work(monkeypatch):
+    prob = valley()
+    needed = DesignBatches(prob.model, 1000).memory
+    assert 1000 * 5 * 8 <= needed <= 1000 * 500  # two numbers in and three out, and some between
+    monkeypatch.setattr(design_batches, "free_memory", lambda: needed // 2)
+    with pytest.raises(ValueError, match=r"designs_at_once 1000 needs .* GiB .*: 500 designs fit"):
+        DesignBatches(prob.model, 1000)
 
 
 @pytest.mark.parametrize("at_once", [2, 3, 8])

@@ -1,0 +1,97 @@
+"""Throughput of a population of blades by the number that one compiled call has.
+
+``python benchmarks/population.py`` prints it for the devices that JAX finds, an accelerator where
+there is one; ``--at-once 1 8 64 256`` chooses the batches. The benchmark `test_bench_population.py`
+keeps the same numbers.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import time
+from typing import Any
+
+import jax
+import numpy as np
+import openmdao.api as om
+import worker_models
+
+from propmdao.components.drivers.evaluation.design_batches import DesignBatches
+
+
+class Population:
+    """Blades with angles up to two degrees from those of the low-noise design, ready to run.
+
+    Parameters
+    ----------
+    problem : om.Problem
+        `worker_models.low_noise`, set up.
+    at_once : int
+        Blades that one call has; 1: one run of the model after the other.
+    """
+
+    def __init__(self, problem: om.Problem, at_once: int) -> None:
+        problem.final_setup()
+        self.problem, self.at_once = problem, at_once
+        self.batches = DesignBatches(problem.model, at_once) if at_once > 1 else None
+
+    @property
+    def bytes_per_blade(self) -> int | None:
+        """Memory on all devices that a blade takes, by the compiled code [B]."""
+        if self.batches is None:
+            return None
+        return self.batches.memory * jax.local_device_count() // self.at_once
+
+    def starts(self, n_blades: int, seed: int) -> list[np.ndarray]:
+        """Outputs of the model before the runs of so many blades."""
+        outputs = self.problem.model.get_nonlinear_vectors()[1]
+        beta, rng = self.problem.get_val("beta_cp").copy(), np.random.default_rng(seed)
+        starts = []
+        for twist in np.radians(rng.uniform(-2.0, 2.0, n_blades)):
+            self.problem.set_val("beta_cp", beta + twist)
+            starts.append(outputs.asarray(copy=True))
+        self.problem.set_val("beta_cp", beta)
+        return starts
+
+    def run(self, starts: list[np.ndarray]) -> None:
+        """Trim, loads and tones of all blades."""
+        if self.batches is not None:
+            assert not any(run.ended_early for run in self.batches.run(starts))
+            return
+        outputs = self.problem.model.get_nonlinear_vectors()[1]
+        for start in starts:
+            outputs.set_val(start)
+            self.problem.model.run_solve_nonlinear()
+
+
+def throughput(at_once: int) -> dict[str, Any]:
+    """Blades a second in calls of so many, after compilation, and what compiling took."""
+    population = Population(worker_models.low_noise(), at_once)
+    n_blades = max(at_once, 16)
+    began = time.perf_counter()
+    population.run(population.starts(at_once, 0))
+    compiled = time.perf_counter()
+    starts = population.starts(n_blades, 1)
+    again = time.perf_counter()
+    population.run(starts)
+    seconds, size = time.perf_counter() - again, population.bytes_per_blade
+    return {
+        "at_once": at_once,
+        "blades_per_second": round(n_blades / seconds, 2),
+        "mib_per_blade": None if size is None else round(size / 2**20, 1),
+        "first_call_s": round(compiled - began, 1),
+    }
+
+
+def main() -> None:
+    """Print a line for each batch, as JSON."""
+    parser = argparse.ArgumentParser(description=__doc__.split("\n\n")[0])
+    parser.add_argument("--at-once", type=int, nargs="+", default=[1, 8, 64], metavar="N")
+    for at_once in parser.parse_args().at_once:
+        devices = {"device": jax.devices()[0].device_kind, "devices": jax.local_device_count()}
+        print(json.dumps(devices | throughput(at_once)), flush=True)
+
+
+if __name__ == "__main__":
+    main()
