@@ -1,8 +1,8 @@
-"""Throughput of a population of blades by the number that one compiled call has.
+"""Throughput of a population of blades by the number that one compiled call has, and of a sweep.
 
 ``python benchmarks/population.py`` prints it for the devices that JAX finds, an accelerator where
-there is one; ``--at-once 1 8 64 256`` chooses the batches. The benchmark `test_bench_population.py`
-keeps the same numbers.
+there is one; ``--at-once 1 8 64 256`` chooses the batches, ``--points 256`` the points of a blade.
+The benchmark `test_bench_population.py` keeps the same numbers.
 """
 
 from __future__ import annotations
@@ -17,6 +17,8 @@ import numpy as np
 import openmdao.api as om
 import worker_models
 
+import propmdao as pm
+from propmdao.analysis.sweeping.batches import analyze_each
 from propmdao.components.drivers.evaluation.design_batches import DesignBatches
 
 
@@ -84,12 +86,34 @@ def throughput(at_once: int) -> dict[str, Any]:
     }
 
 
+def swept(n_points: int) -> dict[str, Any]:
+    """Points a second of one blade at rotation speeds, by the lattice without noise."""
+    propeller = pm.load_propeller("apcsf_11x4.7")
+
+    def seconds(shift: float) -> float:
+        rpm = np.linspace(3000.0, 6000.0, n_points) + shift
+        began = time.perf_counter()
+        for outcome in analyze_each(propeller, [{"rpm": float(value)} for value in rpm]):
+            outcome.said()
+        return time.perf_counter() - began
+
+    first, again = seconds(0.0), seconds(1.0)
+    return {
+        "points": n_points,
+        "points_per_second": round(n_points / again, 2),
+        "first_call_s": round(first, 1),
+    }
+
+
 def main() -> None:
-    """Print a line for each batch, as JSON."""
+    """Print a line for each batch and one for the points, as JSON."""
     parser = argparse.ArgumentParser(description=__doc__.split("\n\n")[0])
     parser.add_argument("--at-once", type=int, nargs="+", default=[1, 8, 64], metavar="N")
-    for at_once in parser.parse_args().at_once:
-        devices = {"device": jax.devices()[0].device_kind, "devices": jax.local_device_count()}
+    parser.add_argument("--points", type=int, default=64, metavar="N")
+    options = parser.parse_args()
+    devices = {"device": jax.devices()[0].device_kind, "devices": jax.local_device_count()}
+    print(json.dumps(devices | swept(options.points)), flush=True)
+    for at_once in options.at_once:
         print(json.dumps(devices | throughput(at_once)), flush=True)
 
 

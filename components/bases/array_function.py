@@ -9,7 +9,7 @@ from typing import Any, Protocol
 import jax
 
 from propmdao.runtime.compilation import compiled
-from propmdao.runtime.devices import at_all
+from propmdao.runtime.side_by_side import at_all
 
 Arrays = dict[str, Any]  # of NumPy or JAX, by variable name
 Function = Callable[[Arrays, Any, Any], Arrays]  # of inputs, constants and what is static

@@ -26,9 +26,8 @@ from propmdao.components.bases.refusals import (
     require_real,
 )
 from propmdao.runtime.compilation import memory_of
-from propmdao.runtime.devices import stacked
 from propmdao.runtime.finite import Axis
-from propmdao.runtime.side_by_side import side_by_side
+from propmdao.runtime.side_by_side import side_by_side, stacked
 
 
 class JaxComponent(om.ExplicitComponent):

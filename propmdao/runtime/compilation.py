@@ -60,26 +60,18 @@ def compiled(
     names = {static_argnames} if isinstance(static_argnames, str) else set(static_argnames or ())
     names |= {parameters[place] for place in static_argnums or ()}
 
-    def of_one_type(
-        args: tuple[Any, ...], named: dict[str, Any]
-    ) -> tuple[list[Any], dict[str, Any]]:
-        places = zip_longest(parameters[: len(args)], args)  # *args of a function have no names
-        return (
-            [a if k in names else _of_one_type(a) for k, a in places],
-            {k: a if k in names else _of_one_type(a) for k, a in named.items()},
-        )
-
     @wraps(function)
     def call(*args: _Parameters.args, **kwargs: _Parameters.kwargs) -> _Result:
         if _place_in_traces() != _OUTSIDE:
             return as_part(*args, **kwargs)
-        positional, named = of_one_type(args, kwargs)
-        result: _Result = alone()(*positional, **named)
-        return result
+        places = zip_longest(parameters[: len(args)], args)  # *args of a function have no names
+        positional = [a if k in names else _of_one_type(a) for k, a in places]
+        named = {k: a if k in names else _of_one_type(a) for k, a in kwargs.items()}
+        return alone()(*positional, **named)
 
-    def lower(*args: Any, **kwargs: Any) -> Any:
-        positional, named = of_one_type(args, kwargs)
-        return alone().lower(*positional, **named)
+    def lower(*args: Any) -> Any:
+        given = zip(parameters, args, strict=True)
+        return alone().lower(*(a if k in names else _of_one_type(a) for k, a in given))
 
     vars(call)["lower"] = lower  # for `memory_of`
     return call

@@ -16,7 +16,7 @@ from propmdao.components.drivers.evaluation.model_run import (
     failure_message,
     record_run,
 )
-from propmdao.runtime.devices import free_memory
+from propmdao.runtime.side_by_side import free_memory
 
 
 class _Transfer(NamedTuple):

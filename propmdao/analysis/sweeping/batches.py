@@ -36,8 +36,7 @@ from propmdao.propeller.description import Propeller
 from propmdao.records.models import Model
 from propmdao.records.states import OperatingPoint, RotorState
 from propmdao.runtime.compilation import compiled
-from propmdao.runtime.devices import at_all, is_accelerated, stacked
-from propmdao.runtime.side_by_side import n_cores, side_by_side
+from propmdao.runtime.side_by_side import at_all, is_accelerated, n_cores, side_by_side, stacked
 
 #: Points that are solved for in one compiled call; fewer are filled up.
 BATCH_SIZE = 64
