@@ -18,7 +18,7 @@ help:
 	@echo "                 PROPMDAO_REFERENCE_DATA names the folder of reference data"
 	@echo "make lint        ruff and mypy"
 	@echo "make format      rewrite the source as 'make lint' wants it"
-	@echo "make bench       benchmarks"
+	@echo "make bench       benchmarks, a JSON file of each run in build/benchmarks"
 	@echo "make docs        the documentation site in build/site; its code runs, warnings are errors"
 	@echo "make notebooks   its pages with code as Jupyter notebooks in build/notebooks"
 	@echo "make clean       remove .venv and everything built"
@@ -48,7 +48,9 @@ format: $(VENV)/dev
 	$(BIN)/ruff format .
 
 bench: $(VENV)/dev
-	$(BIN)/python -m pytest benchmarks --benchmark-only
+	mkdir -p build/benchmarks
+	$(BIN)/python -m pytest benchmarks --benchmark-only \
+	  --benchmark-json=build/benchmarks/$$(date +%Y-%m-%d-%H%M%S).json
 
 # Pages run the propmdao command and show figures as a notebook does, so not with the backend above.
 docs: $(VENV)/docs

@@ -1,11 +1,21 @@
-"""Fixtures of the benchmarks: the models that workers build, a rotor to solve, the clock."""
+"""Fixtures of the benchmarks: the models that workers build, a rotor to solve, the clock.
+
+And what the JSON of a run says beside its times: the machine and how busy it was, versions, the
+time of the reference kernel (`reference_kernel.c`), and ratios to it and to ``floor_s``, the floor
+that a benchmark puts into its ``extra_info`` [s].
+"""
 
 from __future__ import annotations
 
-import importlib
+import importlib.metadata
+import os
+import platform
+import sys
+import tempfile
 import time
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import jax
 import pytest
@@ -20,14 +30,44 @@ from propmdao.geometry.blade import Blade
 from propmdao.geometry.lattice import lattice_interpolation, lattice_nodes, strip_interpolation
 from propmdao.records.states import RotorState
 from propmdao.records.wake_law import WakeGrid, WakeLaw
+from propmdao.runtime.side_by_side import n_cores
+
+sys.path.insert(0, str(Path(__file__).parent))  # workers inherit it
+import worker_models
+from reference_kernel import reference_seconds
+
+VERSIONS = ("jax", "jaxlib", "numpy", "scipy", "openmdao")
+
+
+def pytest_benchmark_update_json(config, benchmarks, output_json: dict[str, Any]) -> None:
+    """Add what times are to be compared with."""
+    with tempfile.TemporaryDirectory() as folder:
+        reference = reference_seconds(Path(folder))
+    processor = output_json["machine_info"].get("cpu", {}).get("brand_raw", platform.machine())
+    output_json["machine_info"] = {}  # it names the machine
+    output_json["propmdao"] = {
+        "processor": processor,
+        "cores": n_cores(),
+        "device": jax.devices()[0].device_kind,
+        "system": platform.system(),
+        "processes waiting": round(os.getloadavg()[0], 1) if hasattr(os, "getloadavg") else None,
+        "python": platform.python_version(),
+        "propmdao": pm.__version__,
+        **{name: importlib.metadata.version(name) for name in VERSIONS},
+        "reference_kernel_s": reference,
+    }
+    for benchmark in output_json["benchmarks"]:
+        median, said = benchmark["stats"]["median"], benchmark["extra_info"]
+        if reference is not None:
+            said["over_reference"] = median / reference
+        if "floor_s" in said:
+            said["over_floor"] = median / said["floor_s"]
 
 
 @pytest.fixture(scope="session")
 def models():
-    """The module worker_models; workers find it by the path that they inherit."""
-    with pytest.MonkeyPatch.context() as patch:
-        patch.syspath_prepend(Path(__file__).parent)
-        yield importlib.import_module("worker_models")
+    """The module worker_models, which workers import, too."""
+    return worker_models
 
 
 @pytest.fixture(scope="session")
