@@ -92,26 +92,39 @@ class JaxComponent(om.ExplicitComponent):
         list of dicts of arrays, or of om.AnalysisError
             Outputs by name of each design, or why it has none.
         """
-        return self._evaluate_points(designs, batch_size)
+        return [self._outputs_of(values) for values in self.values_at_all(designs, batch_size)]
 
-    def _evaluate_points(
+    def _outputs_of(self, values: Mapping[str, Any] | om.AnalysisError) -> Any:
+        """Outputs alone of what the function returns, or the error that it has instead."""
+        if isinstance(values, om.AnalysisError):
+            return values
+        return {name: values[name] for name in self.output_shapes()}
+
+    def values_at_all(
         self, points: Sequence[Arrays], batch_size: int
-    ) -> list[Arrays | om.AnalysisError]:
+    ) -> list[Mapping[str, Any] | om.AnalysisError]:
+        """Do at several points at once what `values_at` does at one.
+
+        Parameters
+        ----------
+        points : sequence of dicts of arrays
+            Inputs by name.
+        batch_size : int
+            Number of points that the code is compiled for; there are no more than these.
+
+        Returns
+        -------
+        list of mappings, or of om.AnalysisError
+            What the function returns at each point, or why it returns nothing.
+        """
         refusals = [_error(self.check_inputs, point) for point in points]
         good = [point for point, refusal in zip(points, refusals, strict=True) if not refusal]
-        evaluated = iter(self._evaluate_good_points(good, batch_size))
+        found = self.found_at_all(good, batch_size) if good else []
+        evaluated = (
+            _error(self._check_results, point, here) or here
+            for point, here in zip(good, found, strict=True)
+        )
         return [refusal or next(evaluated) for refusal in refusals]
-
-    def _evaluate_good_points(
-        self, points: Sequence[Arrays], batch_size: int
-    ) -> list[Arrays | om.AnalysisError]:
-        if not points:
-            return []
-        results: list[Arrays | om.AnalysisError] = []
-        for point, here in zip(points, self.found_at_all(points, batch_size), strict=True):
-            outputs = {name: here[name] for name in self.output_shapes()}
-            results.append(_error(self._check_results, point, here) or outputs)
-        return results
 
     def _check_results(self, inputs: Arrays, values: Mapping[str, Any]) -> None:
         self.check(inputs, values)

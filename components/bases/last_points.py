@@ -37,17 +37,24 @@ class LastPoints(Generic[Result]):
 
     def __call__(self, inputs: Arrays) -> Result:
         """Return the function's result, computed where the inputs are not those of a last point."""
+        result = self.known(inputs)
+        if result is None:
+            result = self._function(inputs)
+            self.keep(inputs, result)
+        return result
+
+    def known(self, inputs: Arrays) -> Result | None:
+        """Result at inputs that are those of a last point; None at any others."""
         with _LOCK:
-            known = tuple(self._results)
-        for point, result in known:
-            if _same(point, inputs):
-                return result
-        result = self._function(inputs)
+            results = tuple(self._results)
+        return next((result for point, result in results if _same(point, inputs)), None)
+
+    def keep(self, inputs: Arrays, result: Result) -> None:
+        """Remember a result, and forget the oldest where there are too many."""
         with _LOCK:
             self._results.append((inputs, result))
             while len(self._results) > self._n_points():
                 self._results.popleft()
-        return result
 
 
 def _same(a: Arrays, b: Arrays) -> bool:

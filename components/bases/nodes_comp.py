@@ -13,7 +13,7 @@ from openmdao.utils.options_dictionary import OptionsDictionary
 from propmdao.components.bases.array_function import Arrays, Derivatives, Shapes
 from propmdao.components.bases.jax_component import JaxComponent, complete_seeds, copied
 from propmdao.components.bases.refusals import require_finite_products, require_real
-from propmdao.runtime.side_by_side import side_by_side
+from propmdao.runtime.side_by_side import is_accelerated, side_by_side
 
 #: Tells Dymos that an input has no axis of nodes.
 STATIC = ["dymos.static_target"]
@@ -45,10 +45,10 @@ class NodesComp(JaxComponent):
     point, with OpenMDAO's own methods inputs that all of them share and outputs that never change.
     Its ``function`` knows of one point only. The points share the cores of the processor, one each:
     the compiled code is that of one point, whatever their number, so is the memory of an
-    evaluation, and a point that no seed touches is not differentiated. A point that is
-    differentiated keeps its
-    linearisation until its inputs change; where all its outputs are scalars and vectors in space,
-    their gradients alone: missions ask for many products at the same points.
+    evaluation, and a point that no seed touches is not differentiated. An accelerator has all of
+    them in one call instead. A point that is differentiated keeps its linearisation until its
+    inputs change; where all its outputs are scalars and vectors in space, their gradients alone:
+    missions ask for many products at the same points.
 
     Options
     -------
@@ -105,6 +105,14 @@ class NodesComp(JaxComponent):
 
     def compute(self, inputs: Any, outputs: Any) -> None:
         require_real(self)
+        if is_accelerated() and self.in_one_call() and self.n_points() > 1:
+            points = [point for _, point in self._points(inputs)]
+            together = self._together(self._at_all_nodes(points, self.n_points()))
+            if isinstance(together, om.AnalysisError):
+                raise together
+            for name, value in together.items():
+                outputs[name] = value
+            return
         for node, values in enumerate(side_by_side(self._at_node, self._points(inputs))):
             for name in self._output_shapes:
                 self._view(node, name, outputs)[:] = values[name]
@@ -120,11 +128,17 @@ class NodesComp(JaxComponent):
     ) -> list[Arrays | om.AnalysisError]:
         n = self.n_points()
         points = [point for design in designs for _, point in self._points(design)]
+        values = self._at_all_nodes(points, batch_size * n)
+        return [self._together(values[i : i + n]) for i in range(0, len(values), n)]
+
+    def _at_all_nodes(
+        self, points: Sequence[Arrays], batch_size: int
+    ) -> list[Mapping[str, Any] | om.AnalysisError]:
+        """Values at several points, or why a point has none, from one call."""
         resting = [self._at_rest_or_refused(point) for point in points]
         moving = [point for point, rest in zip(points, resting, strict=True) if rest is None]
-        evaluated = iter(self._evaluate_points(moving, batch_size * n))
-        values = [next(evaluated) if rest is None else rest for rest in resting]
-        return [self._together(values[i : i + n]) for i in range(0, len(values), n)]
+        evaluated = iter(self.values_at_all(moving, batch_size))
+        return [next(evaluated) if rest is None else rest for rest in resting]
 
     def batch_memory(self, batch_size: int) -> int:
         _, point = next(self._points(self._inputs))
@@ -143,7 +157,9 @@ class NodesComp(JaxComponent):
         except om.AnalysisError as error:
             return error
 
-    def _together(self, values: Sequence[Arrays | om.AnalysisError]) -> Arrays | om.AnalysisError:
+    def _together(
+        self, values: Sequence[Mapping[str, Any] | om.AnalysisError]
+    ) -> Arrays | om.AnalysisError:
         """Outputs from those of all points, or the first error of one."""
         outputs = {name: np.zeros_like(self._outputs[name]) for name in self._output_shapes}
         for node, point_values in enumerate(values):

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from functools import cached_property
 from typing import Any, NamedTuple
 
 import numpy as np
+import openmdao.api as om
 
 from propmdao.components.bases.array_function import (
     Arrays,
@@ -54,6 +55,18 @@ class RootComponent(JaxComponent):
 
     def values_at(self, inputs: Arrays) -> Mapping[str, Any]:
         return self._searched(inputs)  # which derivatives ask for again
+
+    def values_at_all(
+        self, points: Sequence[Arrays], batch_size: int
+    ) -> list[Mapping[str, Any] | om.AnalysisError]:
+        known = [self._searched.known(point) for point in points]
+        new = [point for point, values in zip(points, known, strict=True) if values is None]
+        found = super().values_at_all(new, batch_size)
+        for point, values in zip(new, found, strict=True):
+            if not isinstance(values, om.AnalysisError):
+                self._searched.keep(point, values)
+        searched = iter(found)
+        return [next(searched) if values is None else values for values in known]
 
     def constants_of(self, solution: Mapping[str, Any]) -> Any:
         """Constants of ``function`` that go with what was found.

@@ -6,6 +6,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 from propmdao.components import AerodynamicsComp, RotationSpeedComp, TrimmedAerodynamicsComp
+from propmdao.components.bases import nodes_comp
 
 AIR = {
     "speed": np.array([8.0, 0.5]),
@@ -46,6 +47,31 @@ def test_partials_at_nodes(problem, assert_directional, kind, loads):
     prob = problem(kind, 2, {**AIR, **GIVEN[kind]}, loads=loads)
     # the root is good to 1e-9 of itself, its differences to some 1e-6
     assert_directional(prob, 1e-5, forward=True)
+
+
+@pytest.mark.slow  # derivatives of the search compile for long
+def test_what_an_accelerator_has_searched_is_known_to_derivatives(problem, monkeypatch):
+    """By blade elements, which compile soonest: the same derivatives, and no search but the call's.
+
+    A node that has not changed takes no part in a further call.
+    """
+    kind = TrimmedAerodynamicsComp
+    values, options = {**AIR, **GIVEN[kind]}, {"blade_element": True, "loads": False}
+    of, wrt = ["comp.rpm", "comp.torque"], ["comp.speed", "comp.thrust_required"]
+    alone = problem(kind, 2, values, **options).compute_totals(of, wrt)
+    monkeypatch.setattr(nodes_comp, "is_accelerated", lambda: True)
+    together = problem(kind, 2, values, **options)
+    comp = together.model.comp
+    monkeypatch.setattr(comp, "found_at", lambda _: pytest.fail("searched once more"))
+    for key, expected in alone.items():
+        assert_allclose(together.compute_totals(of, wrt)[key], expected, rtol=1e-6, atol=1e-12)
+    asked, found = [], comp.found_at_all
+    monkeypatch.setattr(
+        comp, "found_at_all", lambda points, size: asked.extend(points) or found(points, size)
+    )
+    together.set_val("comp.speed", [8.0, 1.0])
+    together.run_model()
+    assert [point["speed"][0] for point in asked] == [1.0]
 
 
 @pytest.mark.parametrize("kind", [AerodynamicsComp, TrimmedAerodynamicsComp])

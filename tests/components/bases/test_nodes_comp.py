@@ -6,6 +6,7 @@ import pytest
 from numpy.testing import assert_allclose
 from openmdao.utils.assert_utils import assert_check_partials
 
+from propmdao.components.bases import nodes_comp
 from propmdao.components.bases.array_function import FunctionDerivatives
 from propmdao.components.bases.nodes_comp import STATIC, NodesComp
 
@@ -63,6 +64,27 @@ def test_nodes_lead_what_belongs_to_an_operating_point(num_nodes, scalar, array)
     assert prob.get_val("area").shape == (4,)
     assert_allclose(prob.get_val("lift"), 360.0)
     assert_allclose(prob.get_val("gravity"), 9.81)
+
+
+def test_an_accelerator_has_all_nodes_in_one_call(monkeypatch):
+    """With the numbers, and the failures, of nodes one by one."""
+    alone, together = problem(3), problem(3)
+    alone.set_val("speed", [8.0, 10.0, 12.0])
+    alone.run_model()
+    sizes = []
+    found = Wing.found_at_all
+    monkeypatch.setattr(nodes_comp, "is_accelerated", lambda: True)
+    monkeypatch.setattr(
+        Wing, "found_at_all", lambda self, *args: (sizes.append(args[1]), found(self, *args))[1]
+    )
+    together.set_val("speed", [8.0, 10.0, 12.0])
+    together.run_model()
+    assert sizes == [3]
+    for name in ("lift", "share", "gravity"):
+        assert_allclose(together.get_val(name), alone.get_val(name), rtol=1e-14)
+    together.set_val("speed", [8.0, 400.0, 12.0])
+    with pytest.raises(om.AnalysisError, match="node 1: too fast"):
+        together.run_model()
 
 
 @pytest.mark.parametrize("shares", [True, False])
