@@ -119,10 +119,10 @@ class JaxComponent(om.ExplicitComponent):
         """
         refusals = [_error(self.check_inputs, point) for point in points]
         good = [point for point, refusal in zip(points, refusals, strict=True) if not refusal]
-        found = self.found_at_all(good, batch_size) if good else []
+        results = self.found_at_all(good, batch_size) if good else []
         evaluated = (
-            _error(self._check_results, point, here) or here
-            for point, here in zip(good, found, strict=True)
+            _error(self._check_results, point, result) or result
+            for point, result in zip(good, results, strict=True)
         )
         return [refusal or next(evaluated) for refusal in refusals]
 

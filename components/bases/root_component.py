@@ -61,11 +61,11 @@ class RootComponent(JaxComponent):
     ) -> list[Mapping[str, Any] | om.AnalysisError]:
         known = [self._searched.known(point) for point in points]
         new = [point for point, values in zip(points, known, strict=True) if values is None]
-        found = super().values_at_all(new, batch_size)
-        for point, values in zip(new, found, strict=True):
+        solutions = super().values_at_all(new, batch_size)
+        for point, values in zip(new, solutions, strict=True):
             if not isinstance(values, om.AnalysisError):
                 self._searched.keep(point, values)
-        searched = iter(found)
+        searched = iter(solutions)
         return [next(searched) if values is None else values for values in known]
 
     def constants_of(self, solution: Mapping[str, Any]) -> Any:
