@@ -69,9 +69,9 @@ class Population:
 
 def throughput(at_once: int) -> dict[str, Any]:
     """Blades a second in calls of so many, after compilation, and what compiling took."""
+    began = time.perf_counter()
     population = Population(worker_models.low_noise(), at_once)
     n_blades = max(at_once, 16)
-    began = time.perf_counter()
     population.run(population.starts(at_once, 0))
     compiled = time.perf_counter()
     starts = population.starts(n_blades, 1)

@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 import gc
+import json
 import os
+import subprocess
+import sys
 from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from typing import Any
@@ -72,6 +75,26 @@ def checkout() -> Path:
     if not (root / "propmdao").is_dir():
         pytest.skip("not run from a source checkout")
     return root
+
+
+@pytest.fixture(scope="session")
+def on_devices() -> Callable[[int, str, str], Any]:
+    """Gives what a function of a test's module returns, as JSON, where JAX has so many devices."""
+
+    def on_devices(n_devices: int, path: str, function: str) -> Any:
+        place = Path(path)
+        code = f"import json, {place.stem} as module; print(json.dumps(module.{function}()))"
+        run = subprocess.run(
+            [sys.executable, "-W", "ignore", "-c", code],
+            cwd=place.parent,
+            env=os.environ | {"XLA_FLAGS": f"--xla_force_host_platform_device_count={n_devices}"},
+            capture_output=True,
+            text=True,
+        )
+        assert run.returncode == 0, run.stderr
+        return json.loads(run.stdout)
+
+    return on_devices
 
 
 # A case of PSU-WOPWOP, for its formats and for the analysis that runs it.

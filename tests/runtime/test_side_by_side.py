@@ -2,10 +2,6 @@
 
 from __future__ import annotations
 
-import json
-import os
-import subprocess
-import sys
 import threading
 
 import jax
@@ -95,19 +91,8 @@ def computed():
     }
 
 
-def test_two_devices_give_what_one_gives():
-    here = computed()
-    flags = {"XLA_FLAGS": "--xla_force_host_platform_device_count=4"}
-    code = "import json, test_side_by_side as t; print(json.dumps(t.computed()))"
-    run = subprocess.run(
-        [sys.executable, "-c", code],
-        cwd=os.path.dirname(__file__),
-        env=os.environ | flags,
-        check=True,
-        capture_output=True,
-        text=True,
-    )
-    there = json.loads(run.stdout)
+def test_four_devices_give_what_one_gives(on_devices):
+    here, there = computed(), on_devices(4, __file__, "computed")
     assert (here["devices"], here["size"]) == (1, 6)
     assert (there["devices"], there["size"]) == (4, 8)  # a multiple of the devices
     assert here["n"] == there["n"] == [2.0, 0.0, 7.0, 3.0, 20.0]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
+import jax
 import numpy as np
 import pytest
 
@@ -70,6 +71,21 @@ def test_rotation_speeds_and_thrusts_may_be_mixed() -> None:
     first, second, third = (outcome.said() for outcome in analyze_each(PROPELLER, asked))
     assert [float(a.loads.thrust) for a in (first, third)] == pytest.approx([1.0, 2.0])
     assert second.rpm == 4000.0
+
+
+def trimmed() -> list[list[float]]:
+    """Numbers of a blade at three thrusts by blade elements, and how many devices had them."""
+    asked: list[Any] = [{"thrust": thrust, "speed": 4.0, **ELEMENTS} for thrust in (1.0, 1.5, 2.0)]
+    found = [numbers(outcome.result) for outcome in analyze_each(PROPELLER, asked)]
+    return [*found, [float(jax.local_device_count())]]
+
+
+@pytest.mark.slow  # another process compiles all of it again
+def test_two_devices_have_the_points_of_one(on_devices: Any) -> None:
+    *there, two = on_devices(2, __file__, "trimmed")
+    *here, one = trimmed()
+    assert (two, one) == ([2.0], [1.0])
+    np.testing.assert_allclose(there, here, rtol=1e-9)
 
 
 @pytest.mark.slow  # it compiles the lattice twice

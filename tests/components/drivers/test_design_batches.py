@@ -137,6 +137,20 @@ def test_runs_are_those_of_one_design_at_a_time(at_once):
         assert_allclose(run.outputs, outputs, rtol=1e-13)
 
 
+def runs_of_five():
+    """Outputs and failures of five designs, three in a call."""
+    prob = valley()
+    designs = [[0.5, 0.5], [-1.2, 0.3], [1.0, 1.0], [-0.4, 1.5], [0.1, -0.9]]
+    runs = DesignBatches(prob.model, 3).run(starts_at(prob, "x", designs))
+    return [[run.outputs.tolist(), run.failure] for run in runs]
+
+
+def test_two_devices_have_the_runs_of_one(on_devices):
+    for there, here in zip(on_devices(2, __file__, "runs_of_five"), runs_of_five(), strict=True):
+        assert_allclose(there[0], here[0], rtol=1e-13)
+        assert there[1] == here[1]
+
+
 def test_an_error_belongs_to_its_design():
     prob = valley()
     first, second = DesignBatches(prob.model, 2).run(starts_at(prob, "x", [[1.4, 1.4], [1, 1]]))
