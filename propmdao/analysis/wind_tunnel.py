@@ -12,7 +12,7 @@ import numpy as np
 import numpy.typing as npt
 from scipy.optimize import root_scalar
 
-from propmdao.analysis.single_point import analyze
+from propmdao.analysis.sweeping.batches import analyze_each
 from propmdao.propeller.description import Propeller
 from propmdao.runtime.input_files import read_text
 
@@ -170,12 +170,17 @@ def computed(
     Points
         The same points with the computed coefficients, nan where the analysis has not converged.
     """
+    polars = settings.pop("polars", None)
+    same = {"twist_offset_deg": twist_offset_deg, **settings}
+    asked: list[Any] = [
+        {"rpm": rpm, "speed": j * rpm / 60.0 * propeller.diameter, **same}
+        for rpm, j in zip(points.rpm, points.J, strict=True)
+    ]
     coefficients = np.full((points.rpm.size, 2), np.nan)
-    for row, rpm, j in zip(coefficients, points.rpm, points.J, strict=True):
-        speed = j * rpm / 60.0 * propeller.diameter
-        result = analyze(
-            propeller, rpm=rpm, speed=speed, twist_offset_deg=twist_offset_deg, **settings
-        )
+    for row, outcome in zip(
+        coefficients, analyze_each(propeller, asked, polars=polars), strict=True
+    ):
+        result = outcome.said()
         if result.loads.converged:
             row[:] = float(result.coefficients.CT), float(result.coefficients.CP)
     return Points(points.rpm, points.J, *coefficients.T)

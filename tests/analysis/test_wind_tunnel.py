@@ -10,6 +10,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 from propmdao.analysis.single_point import analyze
+from propmdao.analysis.sweeping.batches import analyze_each
 from propmdao.analysis.wind_tunnel import (
     MeasurementError,
     Points,
@@ -125,11 +126,11 @@ def test_computed_is_the_analysis_of_every_point():
 
 def test_point_without_convergence_is_nan(monkeypatch):
     def never(*args, **settings):
-        result = analyze(*args, **settings)
-        loads = dataclasses.replace(result.loads, converged=np.asarray(False))
-        return dataclasses.replace(result, loads=loads)
+        for outcome in analyze_each(*args, **settings):
+            loads = dataclasses.replace(outcome.result.loads, converged=np.asarray(False))
+            yield outcome._replace(result=dataclasses.replace(outcome.result, loads=loads))
 
-    monkeypatch.setattr("propmdao.analysis.wind_tunnel.analyze", never)
+    monkeypatch.setattr("propmdao.analysis.wind_tunnel.analyze_each", never)
     asked = points([3000], [0.0], [0.1], [0.04])
     result = computed(load_propeller("apcsf_11x4.7_uiuc"), asked, fidelity=COARSE)
     assert np.isnan([result.CT, result.CP]).all()
