@@ -13,6 +13,7 @@ import jax.extend.core
 import numpy as np
 
 import propmdao.runtime.jax_setup  # noqa: F401 - before any array is made
+from propmdao.runtime.kept_programs import are_kept, kept_program
 
 _Parameters = ParamSpec("_Parameters")
 _Result = TypeVar("_Result")
@@ -53,7 +54,7 @@ def compiled(
     as_part = jax.jit(function, **static)
 
     @cache
-    def alone() -> Callable[..., _Result]:
+    def alone() -> Any:
         return jax.jit(function, compiler_options=_options(), **static)
 
     parameters = list(inspect.signature(function).parameters)
@@ -64,9 +65,24 @@ def compiled(
     def call(*args: _Parameters.args, **kwargs: _Parameters.kwargs) -> _Result:
         if _place_in_traces() != _OUTSIDE:
             return as_part(*args, **kwargs)
-        places = zip_longest(parameters[: len(args)], args)  # *args of a function have no names
+        # *args of a function have no names
+        places = list(zip_longest(parameters[: len(args)], args))
         positional = [a if k in names else _of_one_type(a) for k, a in places]
         named = {k: a if k in names else _of_one_type(a) for k, a in kwargs.items()}
+        if are_kept():
+            fixed = tuple((k, a) for k, a in [*places, *kwargs.items()] if k in names)
+            by_place = tuple(
+                a for (k, _), a in zip(places, positional, strict=True) if k not in names
+            )
+            by_name = {k: a for k, a in named.items() if k not in names}
+            program = kept_program(
+                call,
+                fixed,
+                (by_place, by_name),
+                lambda: alone().lower(*positional, **named).compile(),
+            )
+            if program is not None:
+                return program(*by_place, **by_name)
         return alone()(*positional, **named)
 
     return call
