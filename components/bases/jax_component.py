@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Hashable, Iterable, Mapping, Sequence
 from operator import itemgetter
 from typing import Any
+from weakref import WeakSet
 
 import jax
 import numpy as np
@@ -16,6 +17,7 @@ from propmdao.components.bases.array_function import (
     Function,
     FunctionDerivatives,
     Shapes,
+    compile_derivatives,
     evaluate,
     evaluate_all,
 )
@@ -26,6 +28,8 @@ from propmdao.components.bases.refusals import (
     require_real,
 )
 from propmdao.runtime.finite import Axis
+
+_components: WeakSet[JaxComponent] = WeakSet()
 
 
 class JaxComponent(om.ExplicitComponent):
@@ -51,6 +55,8 @@ class JaxComponent(om.ExplicitComponent):
     def __init__(self, **options: Any) -> None:
         super().__init__(**options)
         self._linearised = LastPoints(self._derivatives_to_keep, self.n_points)
+        self._has_begun = False  # with its derivatives
+        _components.add(self)
 
     def compute(self, inputs: Any, outputs: Any) -> None:
         require_real(self)
@@ -61,6 +67,8 @@ class JaxComponent(om.ExplicitComponent):
     def compute_jacvec_product(self, inputs: Any, d_inputs: Any, d_outputs: Any, mode: str) -> None:
         require_real(self)
         point = copied(inputs)
+        if mode == "rev":
+            self.begin_reverse()
         derivatives = self._linearised(point)
         if mode == "fwd":
             shapes: Shapes = {name: value.shape for name, value in point.items()}
@@ -72,6 +80,42 @@ class JaxComponent(om.ExplicitComponent):
         require_finite_products(products, seeds)
         for name in sums:
             sums[name] += products[name]
+
+    def compile_derivatives(self, inputs: Arrays) -> None:
+        """Begin to compile the derivatives in other threads, at inputs with a result.
+
+        Parameters
+        ----------
+        inputs : dict of arrays
+            Inputs by name, of one point.
+        """
+        shapes = self.output_shapes()
+        compile_derivatives(self.function, self.static, self.constants, inputs, shapes)
+
+    def begin_reverse(self) -> None:
+        """Begin to compile the derivatives of all components of the model that are asked for.
+
+        They are independent of each other, and so are compiled side by side.
+        """
+        if self._has_begun:
+            return
+        of_model = [other for other in _components if other._problem_meta is self._problem_meta]
+        with self._relevance.all_seeds_active():
+            asked = [c for c in of_model if self._relevance.is_relevant_system(c.pathname)]
+        for component in asked:
+            if not component._has_begun:
+                component._has_begun = True
+                component.compile_derivatives(component.first_point())
+
+    def first_point(self) -> Arrays:
+        """Inputs of the first of the points that the component works at.
+
+        Returns
+        -------
+        dict of arrays
+            Inputs by name.
+        """
+        return copied(self._inputs)
 
     def evaluate_designs(
         self, designs: Sequence[Arrays], batch_size: int

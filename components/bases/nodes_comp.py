@@ -153,6 +153,8 @@ class NodesComp(JaxComponent):
 
     def compute_jacvec_product(self, inputs: Any, d_inputs: Any, d_outputs: Any, mode: str) -> None:
         require_real(self)
+        if mode == "rev":
+            self.begin_reverse()
         start, end = (d_inputs, d_outputs) if mode == "fwd" else (d_outputs, d_inputs)
         all_seeds = copied(start)
         for node, point in self._points(inputs):
@@ -172,6 +174,9 @@ class NodesComp(JaxComponent):
             for name in end:
                 if name in products:  # outputs that never change have none
                     self._view(node, name, end)[:] += products[name]
+
+    def first_point(self) -> Arrays:
+        return next(point for _, point in self._points(self._inputs))
 
     def n_points(self) -> int:
         return self.options["num_nodes"] or 1

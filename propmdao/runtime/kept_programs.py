@@ -30,7 +30,7 @@ from typing import Any
 import jax
 import numpy as np
 from jax.experimental.serialize_executable import deserialize_and_load, serialize
-from jax.stages import Compiled
+from jax.stages import Compiled, Lowered
 
 import propmdao
 from propmdao.runtime import linear_algebra
@@ -67,7 +67,7 @@ def kept_program(
     function: Callable[..., Any],
     fixed: tuple[Hashable, ...],
     arguments: tuple[tuple[Any, ...], dict[str, Any]],
-    compile_it: Callable[[], Compiled],
+    lower: Callable[[], Lowered],
 ) -> Compiled | None:
     """Program of a function for arguments of these kinds: in memory, on the disk, or compiled.
 
@@ -79,8 +79,8 @@ def kept_program(
         Arguments that are compiled in.
     arguments : (tuple, dict)
         The other ones, by place and by name: numbers and arrays, or their shapes and types.
-    compile_it : callable
-        Compiles the function for them.
+    lower : callable
+        Makes the function ready to be compiled for them.
 
     Returns
     -------
@@ -89,7 +89,7 @@ def kept_program(
         and none is kept.
     """
     leaves, tree = jax.tree.flatten(arguments)
-    kinds = tuple(map(_kind, leaves))
+    kinds = tuple(map(kind_of, leaves))
     key = function, fixed, tree, kinds
     try:
         return _programs[key]
@@ -104,16 +104,28 @@ def kept_program(
     file = _file(repr((named, kinds)).encode())
     program = file and _loaded(file, tree)
     if not program:
+        lowered = lower()
         n_read = _n_read_from_jaxs_cache()
-        program = compile_it()
+        program = lowered.compile()
         # What JAX has read from its cache it cannot write down again: functions would be missing.
         if file and n_read == _n_read_from_jaxs_cache():
             _keep(file, program)
     return _programs.setdefault(key, program)
 
 
-def _kind(leaf: Any) -> Hashable:
-    """Shape and type of an argument; None for one that was put on a device, or is neither."""
+def kind_of(leaf: Any) -> Hashable:
+    """Tell what a program is compiled for of an argument.
+
+    Parameters
+    ----------
+    leaf : object
+        Number, array, or shape and type of one.
+
+    Returns
+    -------
+    hashable or None
+        Shape and type; None for what was put on a device, or is neither.
+    """
     if isinstance(leaf, np.ndarray | np.generic | jax.Array | jax.ShapeDtypeStruct):
         return None if getattr(leaf, "committed", False) else (leaf.shape, leaf.dtype.name)
     return type(leaf).__name__ if isinstance(leaf, bool | int | float | complex) else None

@@ -80,7 +80,9 @@ def _warm_up(options: argparse.Namespace) -> None:
     started = time.perf_counter()
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # of results that nobody has asked for
-        for words, work in _works(propeller, observers).items():
+        works = _works(propeller, observers)
+        warnings.simplefilter("ignore")  # OpenMDAO asks to be heard
+        for words, work in works.items():
             before = time.perf_counter()
             work()
             print_line(f"{words}: {time.perf_counter() - before:.1f} s")
