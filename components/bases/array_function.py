@@ -7,8 +7,9 @@ from functools import partial
 from typing import Any, Protocol
 
 import jax
+import numpy as np
 
-from propmdao.runtime.compilation import compiled
+from propmdao.runtime.compilation import compile_ahead, compiled
 from propmdao.runtime.side_by_side import at_all
 
 Arrays = dict[str, Any]  # of NumPy or JAX, by variable name
@@ -70,6 +71,27 @@ class FunctionDerivatives:
         if self._pull is None:
             self._pull = _linearise(*self._linearisation)
         return _pull_back(self._pull, seeds)
+
+
+def compile_derivatives(
+    function: Function, static: Hashable, constants: Any, inputs: Arrays, outputs: Shapes
+) -> None:
+    """Begin to compile what reverse products take, in other threads.
+
+    Parameters
+    ----------
+    function, static, constants, inputs
+        Function and its arguments, as `FunctionDerivatives` takes them.
+    outputs : dict of tuples of int
+        Shapes of those of its results that are differentiated, in their order there.
+    """
+    seeds = {name: np.zeros(shape) for name, shape in outputs.items()}
+
+    def pull_back(pull: Any) -> None:
+        compile_ahead(_pull_back, pull, seeds)
+
+    linearisation = function, static, tuple(outputs), constants, inputs
+    compile_ahead(_linearise, *linearisation, then=pull_back)
 
 
 def _chosen(

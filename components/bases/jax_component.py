@@ -2,35 +2,29 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Hashable, Iterable, Mapping, Sequence
-from operator import itemgetter
 from typing import Any
+from weakref import WeakSet
 
-import jax
 import numpy as np
-import openmdao.api as om
 
 from propmdao.components.bases.array_function import (
     Arrays,
     Derivatives,
-    Function,
     FunctionDerivatives,
     Shapes,
-    evaluate,
-    evaluate_all,
+    compile_derivatives,
 )
+from propmdao.components.bases.function_at_points import FunctionAtPoints, copied
 from propmdao.components.bases.last_points import LastPoints
 from propmdao.components.bases.refusals import (
     require_finite_products,
-    require_numbers,
     require_real,
 )
-from propmdao.runtime.compilation import memory_of
-from propmdao.runtime.finite import Axis
-from propmdao.runtime.side_by_side import side_by_side, stacked
+
+_components: WeakSet[JaxComponent] = WeakSet()
 
 
-class JaxComponent(om.ExplicitComponent):
+class JaxComponent(FunctionAtPoints):
     """Explicit component around one pure function, with matrix-free exact derivatives.
 
     It declares nothing. A subclass declares its variables in ``setup`` and there gives
@@ -44,15 +38,11 @@ class JaxComponent(om.ExplicitComponent):
     combination that OpenMDAO asks for would take far longer than the products.
     """
 
-    function: Function
-    constants: Any = None
-    static: Hashable = None
-    #: Words for the axes of outputs, for messages.
-    axes: Mapping[str, tuple[Axis, ...]] = {}
-
     def __init__(self, **options: Any) -> None:
         super().__init__(**options)
         self._linearised = LastPoints(self._derivatives_to_keep, self.n_points)
+        self._has_begun = False  # with its derivatives
+        _components.add(self)
 
     def compute(self, inputs: Any, outputs: Any) -> None:
         require_real(self)
@@ -63,6 +53,8 @@ class JaxComponent(om.ExplicitComponent):
     def compute_jacvec_product(self, inputs: Any, d_inputs: Any, d_outputs: Any, mode: str) -> None:
         require_real(self)
         point = copied(inputs)
+        if mode == "rev":
+            self.begin_reverse()
         derivatives = self._linearised(point)
         if mode == "fwd":
             shapes: Shapes = {name: value.shape for name, value in point.items()}
@@ -75,180 +67,31 @@ class JaxComponent(om.ExplicitComponent):
         for name in sums:
             sums[name] += products[name]
 
-    def evaluate_designs(
-        self, designs: Sequence[Arrays], batch_size: int
-    ) -> list[Arrays | om.AnalysisError]:
-        """Outputs at several designs, from one call of the compiled function.
-
-        Parameters
-        ----------
-        designs : sequence of dicts of arrays
-            Inputs by name, of each design.
-        batch_size : int
-            Number of designs that the code is compiled for; there are no more than these.
-
-        Returns
-        -------
-        list of dicts of arrays, or of om.AnalysisError
-            Outputs by name of each design, or why it has none.
-        """
-        return [self._outputs_of(values) for values in self.values_at_all(designs, batch_size)]
-
-    def _outputs_of(self, values: Mapping[str, Any] | om.AnalysisError) -> Any:
-        """Outputs alone of what the function returns, or the error that it has instead."""
-        if isinstance(values, om.AnalysisError):
-            return values
-        return {name: values[name] for name in self.output_shapes()}
-
-    def values_at_all(
-        self, points: Sequence[Arrays], batch_size: int
-    ) -> list[Mapping[str, Any] | om.AnalysisError]:
-        """Do at several points at once what `values_at` does at one.
-
-        Parameters
-        ----------
-        points : sequence of dicts of arrays
-            Inputs by name.
-        batch_size : int
-            Number of points that the code is compiled for; there are no more than these.
-
-        Returns
-        -------
-        list of mappings, or of om.AnalysisError
-            What the function returns at each point, or why it returns nothing.
-        """
-        refusals = [_error(self.check_inputs, point) for point in points]
-        good = [point for point, refusal in zip(points, refusals, strict=True) if not refusal]
-        results = self.found_at_all(good, batch_size) if good else []
-        evaluated = (
-            _error(self._check_results, point, result) or result
-            for point, result in zip(good, results, strict=True)
-        )
-        return [refusal or next(evaluated) for refusal in refusals]
-
-    def _check_results(self, inputs: Arrays, values: Mapping[str, Any]) -> None:
-        self.check(inputs, values)
-        self.require_numbers(inputs, values)
-
-    def evaluated(self) -> tuple[Function, Any]:
-        """Function that `compute` calls, and its constants; a `RootComponent` searches first."""
-        return self.function, self.constants
-
-    def found_at(self, inputs: Arrays) -> Mapping[str, Any]:
-        """Evaluate the function at inputs that have been checked.
+    def compile_derivatives(self, inputs: Arrays) -> None:
+        """Begin to compile the derivatives in other threads, at inputs with a result.
 
         Parameters
         ----------
         inputs : dict of arrays
-            Inputs by name.
-
-        Returns
-        -------
-        mapping
-            What the function returns.
+            Inputs by name, of one point.
         """
-        function, constants = self.evaluated()
-        return evaluate(function, self.static, constants, inputs)
+        shapes = self.output_shapes()
+        compile_derivatives(self.function, self.static, self.constants, inputs, shapes)
 
-    def found_at_all(
-        self, points: Sequence[Arrays], batch_size: int
-    ) -> Iterable[Mapping[str, Any]]:
-        """Evaluate the function at several points at once.
+    def begin_reverse(self) -> None:
+        """Begin to compile the derivatives of all components of the model that are asked for.
 
-        Parameters
-        ----------
-        points : sequence of dicts of arrays
-            Inputs by name that have been checked, at one point at least.
-        batch_size : int
-            Number of points that the code is compiled for; there are no more than these.
-
-        Returns
-        -------
-        iterable of mappings
-            What the function returns at each point.
+        They are independent of each other, and so are compiled side by side.
         """
-        if not self.in_one_call():
-            return side_by_side(self.found_at, points)
-        function, constants = self.evaluated()
-        inputs = stacked(points, batch_size)
-        values = jax.device_get(evaluate_all(function, self.static, constants, inputs))
-        return (jax.tree.map(itemgetter(place), values) for place in range(len(points)))
-
-    def batch_memory(self, batch_size: int) -> int:
-        """Memory that `evaluate_designs` takes on each device, by the code that is compiled for it.
-
-        Parameters
-        ----------
-        batch_size : int
-            Number of designs that the code is compiled for.
-
-        Returns
-        -------
-        int
-            Bytes; 0 where designs are not evaluated in one call.
-        """
-        return self._points_memory(copied(self._inputs), batch_size)
-
-    def _points_memory(self, point: Arrays, batch_size: int) -> int:
-        if not self.in_one_call():
-            return 0
-        function, constants = self.evaluated()
-        inputs = stacked([point], batch_size)
-        return memory_of(evaluate_all, function, self.static, constants, inputs)
-
-    def in_one_call(self) -> bool:
-        """Whether several points are evaluated in one call of the compiled function.
-
-        Returns
-        -------
-        bool
-            True, unless a subclass knows better.
-        """
-        return True
-
-    def n_points(self) -> int:
-        """Number of points that the component works at before it comes back to the first.
-
-        Returns
-        -------
-        int
-            One, unless a subclass knows better.
-        """
-        return 1
-
-    def output_shapes(self) -> Shapes:
-        """Shapes of the outputs that `function` returns.
-
-        Returns
-        -------
-        dict of tuples of int
-            Shapes by output name.
-        """
-        outputs = self.get_io_metadata(iotypes="output", metadata_keys=["shape"])
-        return {name: meta["shape"] for name, meta in outputs.items()}
-
-    def values_at(self, inputs: Arrays) -> Mapping[str, Any]:
-        """Check the inputs, evaluate the function and check what it returns.
-
-        Parameters
-        ----------
-        inputs : dict of arrays
-            Inputs by name.
-
-        Returns
-        -------
-        mapping
-            Outputs by name, and whatever else the function returns.
-
-        Raises
-        ------
-        om.AnalysisError
-            When `check_inputs` or `check` raises it, or an output is not finite.
-        """
-        self.check_inputs(inputs)
-        values = self.found_at(inputs)
-        self._check_results(inputs, values)
-        return values
+        if self._has_begun:
+            return
+        of_model = [other for other in _components if other._problem_meta is self._problem_meta]
+        with self._relevance.all_seeds_active():
+            asked = [c for c in of_model if self._relevance.is_relevant_system(c.pathname)]
+        for component in asked:
+            if not component._has_begun:
+                component._has_begun = True
+                component.compile_derivatives(component.first_point())
 
     def derivatives_at(self, inputs: Arrays) -> Derivatives:
         """Derivatives of the outputs by the inputs.
@@ -269,74 +112,6 @@ class JaxComponent(om.ExplicitComponent):
     def _derivatives_to_keep(self, inputs: Arrays) -> Derivatives:
         """Derivatives in the form that is kept for further products at the same inputs."""
         return self.derivatives_at(inputs)
-
-    def check_inputs(self, inputs: Arrays) -> None:
-        """Raise ``om.AnalysisError`` for inputs that mean nothing, before the work.
-
-        By default for those that are not finite; subclasses add theirs.
-
-        Parameters
-        ----------
-        inputs : dict of arrays
-            Inputs by name.
-        """
-        require_numbers("input ", inputs)
-
-    def require_numbers(self, inputs: Arrays, values: Mapping[str, Any]) -> None:
-        """Raise ``om.AnalysisError`` where an output is not finite.
-
-        Parameters
-        ----------
-        inputs : dict of arrays
-            Inputs by name; rotation and flight speed are named in the message.
-        values : mapping
-            Results of ``function`` by name.
-        """
-        outputs = {name: values[name] for name in self.output_shapes()}
-        known = {**outputs, **inputs}
-        point = [
-            f"{np.asarray(known[name]).item():g} {unit}"
-            for name, unit in (("rpm", "rpm"), ("speed", "m/s"))
-            if name in known
-        ]
-        where = f", at {' and '.join(point)}" if point else ""
-        require_numbers("", outputs, self.axes, where)
-
-    def check(self, inputs: Any, values: Mapping[str, Any]) -> None:
-        """Raise ``om.AnalysisError`` where the values have no meaning; by default never.
-
-        Parameters
-        ----------
-        inputs : mapping
-            Inputs by name.
-        values : mapping
-            Results of ``function`` by name: the outputs, and whatever the check needs beside them.
-        """
-
-
-def _error(check: Callable[..., None], *values: Any) -> om.AnalysisError | None:
-    """Error that a check raises, or None."""
-    try:
-        check(*values)
-    except om.AnalysisError as error:
-        return error
-    return None
-
-
-def copied(vector: Any) -> Arrays:
-    """Copy a vector's values, because its views change while JAX may still read them.
-
-    Parameters
-    ----------
-    vector : mapping
-        OpenMDAO vector.
-
-    Returns
-    -------
-    dict of arrays
-        Values by name.
-    """
-    return {name: np.array(vector[name]) for name in vector}
 
 
 def complete_seeds(vector: Any, shapes: Shapes) -> Arrays:

@@ -56,6 +56,10 @@ class LastPoints(Generic[Result]):
             while len(self._results) > self._n_points():
                 self._results.popleft()
 
+    def last(self) -> Result | None:
+        """Return the result at the last new point; None before there is one."""
+        return self._results[-1][1] if self._results else None
+
 
 def _same(a: Arrays, b: Arrays) -> bool:
     # The small ones, as the speed, first: they tell points of one mesh apart.

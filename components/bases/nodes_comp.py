@@ -11,7 +11,8 @@ import openmdao.api as om
 from openmdao.utils.options_dictionary import OptionsDictionary
 
 from propmdao.components.bases.array_function import Arrays, Derivatives, Shapes
-from propmdao.components.bases.jax_component import JaxComponent, complete_seeds, copied
+from propmdao.components.bases.function_at_points import copied
+from propmdao.components.bases.jax_component import JaxComponent, complete_seeds
 from propmdao.components.bases.refusals import require_finite_products, require_real
 from propmdao.runtime.side_by_side import is_accelerated, side_by_side
 
@@ -141,8 +142,7 @@ class NodesComp(JaxComponent):
         return [next(evaluated) if rest is None else rest for rest in resting]
 
     def batch_memory(self, batch_size: int) -> int:
-        _, point = next(self._points(self._inputs))
-        return self._points_memory(point, batch_size * self.n_points())
+        return self._points_memory(batch_size * self.n_points())
 
     def _at_rest(self, point: Arrays) -> Arrays | None:
         """Zeros for all outputs where nothing moves, inputs checked; None where something does."""
@@ -186,6 +186,8 @@ class NodesComp(JaxComponent):
 
     def compute_jacvec_product(self, inputs: Any, d_inputs: Any, d_outputs: Any, mode: str) -> None:
         require_real(self)
+        if mode == "rev":
+            self.begin_reverse()
         start, end = (d_inputs, d_outputs) if mode == "fwd" else (d_outputs, d_inputs)
         all_seeds = copied(start)
         touched: list[tuple[int, Arrays, Arrays]] = []
@@ -209,6 +211,9 @@ class NodesComp(JaxComponent):
             for name in end:
                 if name in products:  # outputs that never change have none
                     self._view(node, name, end)[:] += products[name]
+
+    def first_point(self) -> Arrays:
+        return next(point for _, point in self._points(self._inputs))
 
     def n_points(self) -> int:
         return self.options["num_nodes"] or 1

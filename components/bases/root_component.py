@@ -15,6 +15,7 @@ from propmdao.components.bases.array_function import (
     Function,
     FunctionDerivatives,
     Shapes,
+    compile_derivatives,
 )
 from propmdao.components.bases.jax_component import JaxComponent
 from propmdao.components.bases.last_points import LastPoints
@@ -82,6 +83,14 @@ class RootComponent(JaxComponent):
             Constants with which the state is a root.
         """
         return solution.get("constants", self.constants)
+
+    def compile_derivatives(self, inputs: Arrays) -> None:
+        if solution := self._searched.last():
+            root = {**inputs, self.state: solution[self.state]}
+            outputs = {**self.output_shapes(), self.residual: (1,)}
+            compile_derivatives(
+                self.function, self.static, self.constants_of(solution), root, outputs
+            )
 
     def derivatives_at(self, inputs: Arrays) -> Derivatives:
         solution = self._searched(inputs)

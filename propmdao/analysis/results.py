@@ -126,7 +126,8 @@ class Analysis:
             the thrust, and its history: azimuth of blade 1, thrust and torque at each step. With
             broadband noise broadband_range, of `noise_range`.
         """
-        levels = jax.tree.map(np.asarray, _levels(self.tones))
+        levels = jax.device_get(_levels(self.tones))
+        loads = jax.device_get(self.loads)
         places = directions(self.listening.observers).rounded()
         propeller = {key: getattr(self.propeller, key) for key in ("name", "diameter", "n_blades")}
         propeller |= {"checksum": checksum(self.propeller), "source": self.propeller.source}
@@ -149,7 +150,7 @@ class Analysis:
             "converged": bool(self.loads.converged),
             "failure": failure(self.loads),
             "deflection": to_plain(self.deflection),
-            **{name: np.asarray(getattr(self.loads, name)).tolist() for name in HUB_LOADS},
+            **{name: np.asarray(getattr(loads, name)).tolist() for name in HUB_LOADS},
             **self._around_the_turn(),
             **self._over_revolutions(),
             **self._range_of_noise(),

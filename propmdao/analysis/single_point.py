@@ -6,7 +6,6 @@ import dataclasses
 from typing import Any, Unpack
 
 import jax
-import jax.numpy as jnp
 import numpy as np
 from jax import Array
 
@@ -286,7 +285,7 @@ def _tones(
         sound = tones(panels, loads.point_loads, n_blades, state, rings.position, n_harmonics)
         order = n_blades * np.arange(1, n_harmonics + 1)
         turned = np.exp(1j * rings.azimuth[:, None] * order)
-        return sound.each(lambda amplitude: amplitude[rings.ring] * turned)
+        return sound.each(lambda amplitude: np.asarray(amplitude)[rings.ring] * turned)
     rotor = Rotor(equally_spaced(n_blades), float(state.rotation_speed), panels, loads.point_loads)
     return rotor_tones(rotor, state.velocity, state.air, points, n_harmonics)
 
@@ -338,7 +337,9 @@ def _warn_outside_polars(case: RotorCase, loads: RotorLoads | TiltedLoads) -> No
     assert case.sections is not None
     strips, air = loads.strips, case.state.air
     # At an incidence the mean over the turn: on the retreating side the air may stand still.
-    speed = jnp.atleast_2d(loads.sections.relative_speed).mean(axis=0)
-    if np.all(np.asarray(speed) > 0.0):
-        reynolds = air.density * speed * strips.chord / air.dynamic_viscosity
-        warn_outside(case.sections.polars, reynolds, strips.r_over_R, speed / air.sound_speed)
+    speed = np.atleast_2d(np.asarray(loads.sections.relative_speed)).mean(axis=0)
+    if np.all(speed > 0.0):
+        kinematic_viscosity = float(air.dynamic_viscosity) / float(air.density)
+        reynolds = speed * np.asarray(strips.chord) / kinematic_viscosity
+        mach = speed / float(air.sound_speed)
+        warn_outside(case.sections.polars, reynolds, strips.r_over_R, mach)

@@ -24,8 +24,10 @@ from propmdao.commands.flyover_command import add_flyover
 from propmdao.commands.inventory.catalogue_command import add_list, add_show
 from propmdao.commands.inventory.completion_command import add_completion
 from propmdao.commands.inventory.doctor_command import add_doctor
-from propmdao.commands.output.progress import tell_progress, telling_of_long_work
+from propmdao.commands.inventory.warm_up_command import add_warm_up
+from propmdao.commands.output.progress import tell_progress, telling_of_compilation
 from propmdao.commands.sweep_command import add_sweep
+from propmdao.runtime.caches import keep_programs
 from propmdao.runtime.output_files import reason_of
 from propmdao.runtime.terminal import print_line, printable
 
@@ -58,6 +60,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
         Exit status: 0, or 2 after one line on stderr about bad input or output that cannot be
         written; 130 when interrupted, 1 when nobody reads the output any more.
     """
+    if arguments is None:  # a process of its own
+        keep_programs()
     parser = build_parser()
     name = parser.prog
     if sys.stdout is None:  # closed by who started the program
@@ -71,7 +75,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
             name = f"{parser.prog} {options.name}"
             tell_progress(getattr(options, "quiet", False))
             options.arguments = sys.argv[1:] if arguments is None else list(arguments)
-            with telling_of_long_work(name):
+            with telling_of_compilation(name):
                 options.command(options)
         finally:  # here, where its errors are caught: also after --help
             sys.stdout.flush()
@@ -129,5 +133,6 @@ def build_parser() -> argparse.ArgumentParser:
     add_export(commands)
     add_wopwop(commands)
     add_doctor(commands)
+    add_warm_up(commands)
     add_completion(commands, build_parser)
     return parser

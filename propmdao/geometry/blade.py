@@ -80,26 +80,28 @@ class Blade:
             camber / np.where(flat, 1.0, max_camber)[:, None],
         )
         max_thickness = thickness.max(axis=1)
-        described_thickness = propeller.thickness_over_chord
-        described_camber = propeller.camber_over_chord
-        edge, angle = propeller.trailing_edge_over_R, propeller.trailing_edge_angle_deg
-        return cls(
-            radius=jnp.asarray(0.5 * propeller.diameter, dtype=float),
-            chord_over_R=jnp.asarray(propeller.c_over_R),
-            beta=jnp.asarray(np.radians(propeller.beta_deg)),
-            sweep_over_R=jnp.asarray(propeller.sweep_over_R),
-            rake_over_R=jnp.asarray(propeller.rake_over_R),
-            thickness_over_chord=jnp.asarray(
-                max_thickness if described_thickness is None else described_thickness
-            ),
-            camber_over_chord=jnp.asarray(
-                max_camber if described_camber is None else described_camber
-            ),
-            camber_shape=jnp.asarray(shape),
-            thickness_shape=jnp.asarray(thickness / max_thickness[:, None]),
-            edge_over_R=None if edge is None else jnp.asarray(edge),
-            edge_angle=None if angle is None else jnp.asarray(np.radians(angle)),
+        thickness_over_chord, camber_over_chord = (
+            there if described is None else described
+            for there, described in (
+                (max_thickness, propeller.thickness_over_chord),
+                (max_camber, propeller.camber_over_chord),
+            )
         )
+        angle = propeller.trailing_edge_angle_deg
+        arrays = {
+            "radius": np.float64(0.5 * propeller.diameter),
+            "chord_over_R": propeller.c_over_R,
+            "beta": np.radians(propeller.beta_deg),
+            "sweep_over_R": propeller.sweep_over_R,
+            "rake_over_R": propeller.rake_over_R,
+            "thickness_over_chord": thickness_over_chord,
+            "camber_over_chord": camber_over_chord,
+            "camber_shape": shape,
+            "thickness_shape": thickness / max_thickness[:, None],
+            "edge_over_R": propeller.trailing_edge_over_R,
+            "edge_angle": None if angle is None else np.radians(angle),
+        }
+        return cls(**jax.device_put(arrays))  # jnp.asarray compiles for each shape
 
 
 def _unit_mean_line() -> npt.NDArray[np.float64]:
@@ -159,11 +161,9 @@ def span_interpolation(
             f"got {radii[outside][0]:g}"
         )
     unit = np.eye(stations.size)
-    return SpanInterpolation(
-        r_over_R=jnp.asarray(radii),
-        smooth=jnp.asarray(CubicSpline(stations, unit)(radii)),
-        linear=jnp.asarray(np.stack([np.interp(radii, stations, e) for e in unit], axis=1)),
-    )
+    smooth = CubicSpline(stations, unit)(radii)
+    linear = np.stack([np.interp(radii, stations, e) for e in unit], axis=1)
+    return SpanInterpolation(*jax.device_put((radii, smooth, linear)))
 
 
 def design_lift_coefficient(camber_shape: npt.ArrayLike | jax.Array) -> jax.Array:

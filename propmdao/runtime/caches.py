@@ -9,18 +9,21 @@ import os
 import tempfile
 from collections.abc import Callable, Mapping
 from pathlib import Path
+from typing import TYPE_CHECKING
 
-import numpy as np
-import numpy.typing as npt
 import platformdirs
 
 from propmdao.runtime.output_files import OutputError, replacing
+
+if TYPE_CHECKING:
+    import numpy.typing as npt
 
 #: Variable of the environment that puts the caches elsewhere.
 FOLDER_VARIABLE = "PROPMDAO_CACHE_DIR"
 # A file begins with this many bytes, the checksum of the archive behind them: an archive that is
 # damaged here or there fails in many ways, or is read without a part.
 _DIGEST = hashlib.sha256().digest_size
+_of_process = {"programs": False}
 
 
 def cache_folder(name: str) -> Path | None:
@@ -48,6 +51,27 @@ def cache_folder(name: str) -> Path | None:
     return folder
 
 
+def keep_programs() -> None:
+    """Keep whole the programs that this process compiles from now on, and load those that are.
+
+    They are found without a look at what their functions have become in a running process
+    (`propmdao.runtime.kept_programs`), so this is for processes in which nothing but propmdao
+    runs: those of the command line.
+    """
+    _of_process["programs"] = True
+
+
+def programs_are_kept() -> bool:
+    """Whether this process keeps its programs whole.
+
+    Returns
+    -------
+    bool
+        Whether `keep_programs` has been called.
+    """
+    return _of_process["programs"]
+
+
 def kept_arrays(
     name: str, key: bytes, make: Callable[[], Mapping[str, npt.NDArray]]
 ) -> dict[str, npt.NDArray]:
@@ -71,6 +95,8 @@ def kept_arrays(
     dict of arrays
         The arrays by name.
     """
+    import numpy as np  # here: the command line asks for the rest of this module first
+
     folder = cache_folder(name)
     if folder is None:
         return dict(make())

@@ -3,16 +3,19 @@
 from __future__ import annotations
 
 import inspect
-from collections.abc import Callable
+from collections.abc import Callable, Hashable
+from concurrent.futures import Future, ThreadPoolExecutor
+from contextlib import suppress
 from functools import cache, wraps
 from itertools import zip_longest
-from typing import Any, ParamSpec, TypeVar
+from typing import Any, NamedTuple, ParamSpec, TypeVar
 
 import jax
 import jax.extend.core
 import numpy as np
 
 import propmdao.runtime.jax_setup  # noqa: F401 - before any array is made
+from propmdao.runtime.kept_programs import are_kept, kept_program, kind_of
 
 _Parameters = ParamSpec("_Parameters")
 _Result = TypeVar("_Result")
@@ -60,21 +63,75 @@ def compiled(
     names = {static_argnames} if isinstance(static_argnames, str) else set(static_argnames or ())
     names |= {parameters[place] for place in static_argnums or ()}
 
+    def split(args: tuple[Any, ...], kwargs: dict[str, Any]) -> _Arguments:
+        places = list(zip_longest(parameters[: len(args)], args))  # *args have no names
+        positional = tuple(a if k in names else _of_one_type(a) for k, a in places)
+        named = {k: a if k in names else _of_one_type(a) for k, a in kwargs.items()}
+        moving = zip(places, positional, strict=True)
+        return _Arguments(
+            positional,
+            named,
+            tuple((k, a) for k, a in [*places, *kwargs.items()] if k in names),
+            tuple(a for (k, _), a in moving if k not in names),
+            {k: a for k, a in named.items() if k not in names},
+        )
+
+    begun: dict[Hashable, Future[None]] = {}
+
     @wraps(function)
     def call(*args: _Parameters.args, **kwargs: _Parameters.kwargs) -> _Result:
         if _place_in_traces() != _OUTSIDE:
             return as_part(*args, **kwargs)
-        places = zip_longest(parameters[: len(args)], args)  # *args of a function have no names
-        positional = [a if k in names else _of_one_type(a) for k, a in places]
-        named = {k: a if k in names else _of_one_type(a) for k, a in kwargs.items()}
-        return alone()(*positional, **named)
+        given = split(args, kwargs)
+        if begun and (compilation := begun.get(given.kinds)):
+            compilation.result()  # its own error is met below, where it belongs
+        if are_kept():
+            program = kept_program(
+                call, given.fixed, given.moving, lambda: alone().lower(*given.args, **given.kwargs)
+            )
+            if program is not None:
+                return program(*given.by_place, **given.by_name)
+        return alone()(*given.args, **given.kwargs)
 
     def lower(*args: Any) -> Any:
-        given = zip(parameters, args, strict=True)
-        return alone().lower(*(a if k in names else _of_one_type(a) for k, a in given))
+        given = split(args, {})
+        return alone().lower(*given.args, **given.kwargs)
 
-    vars(call)["lower"] = lower  # for `memory_of`
+    call.lower = lower  # type: ignore[attr-defined]
+
+    def ahead(then: Callable[[Any], None], args: tuple[Any, ...], kwargs: dict[str, Any]) -> None:
+        given = split(args, kwargs)
+
+        def compile_it() -> None:
+            with suppress(Exception):
+                traced = alone().trace(*given.args, **given.kwargs)
+                then(jax.tree.map(_shape, traced.out_info))
+                traced.lower().compile()
+
+        if given.kinds not in begun:
+            begun[given.kinds] = _helpers().submit(compile_it)
+
+    call.ahead = ahead  # type: ignore[attr-defined]
     return call
+
+
+def compile_ahead(
+    function: Callable[..., Any], *args: Any, then: Callable[[Any], None] = lambda _: None
+) -> None:
+    """Begin to compile a function in another thread; who calls it meanwhile waits.
+
+    Parameters
+    ----------
+    function : callable
+        Function that `compiled` has made.
+    *args
+        Arguments like those that it will be called with, by place alone; shapes and types are
+        enough for those that are not compiled in. The same kinds begin once in a process.
+    then : callable
+        Called in that thread with the shapes of what the function returns, as soon as they are
+        known.
+    """
+    function.ahead(then, args, {})  # type: ignore[attr-defined]
 
 
 def memory_of(function: Callable[..., Any], *args: Any) -> int:
@@ -83,7 +140,7 @@ def memory_of(function: Callable[..., Any], *args: Any) -> int:
     Parameters
     ----------
     function : callable
-        What `compiled` has returned.
+        Function that `compiled` has made.
     *args
         Arguments that it is compiled for; nothing is computed.
 
@@ -92,11 +149,42 @@ def memory_of(function: Callable[..., Any], *args: Any) -> int:
     int
         Bytes of arguments, results and all that is between [B].
     """
-    program = vars(function)["lower"](*args).compile()
+    program = function.lower(*args).compile()  # type: ignore[attr-defined]
     memory = program.memory_analysis()
     return int(
         memory.argument_size_in_bytes + memory.output_size_in_bytes + memory.temp_size_in_bytes
     )
+
+
+class _Arguments(NamedTuple):
+    """Arguments of a call as they are handed on, and what is compiled in apart from the others."""
+
+    args: tuple[Any, ...]
+    kwargs: dict[str, Any]
+    fixed: tuple[Hashable, ...]
+    by_place: tuple[Any, ...]
+    by_name: dict[str, Any]
+
+    @property
+    def moving(self) -> tuple[tuple[Any, ...], dict[str, Any]]:
+        """What is not compiled in."""
+        return self.by_place, self.by_name
+
+    @property
+    def kinds(self) -> Hashable:
+        """All that a program is compiled for."""
+        leaves, tree = jax.tree.flatten(self.moving)
+        return self.fixed, tree, tuple(map(kind_of, leaves))
+
+
+@cache
+def _helpers() -> ThreadPoolExecutor:
+    """Threads that trace; those that compile are XLA's own."""
+    return ThreadPoolExecutor(max_workers=4, thread_name_prefix="compile ahead")
+
+
+def _shape(result: Any) -> jax.ShapeDtypeStruct:
+    return jax.ShapeDtypeStruct(result.shape, result.dtype)
 
 
 def _of_one_type(argument: Any) -> Any:

@@ -10,7 +10,7 @@ is, a processor takes one matrix after the other.
 from __future__ import annotations
 
 from collections.abc import Callable
-from functools import partial
+from functools import cache, partial
 from typing import Any
 
 import jax
@@ -78,6 +78,12 @@ def eigenvalues(matrix: Array) -> Array:
         Eigenvalues in rising order.
     """
     return _eigenvalues(jax.lax.stop_gradient(matrix))
+
+
+@cache
+def load_lapack() -> None:
+    """Load the library that programs factorise with, where none is traced: JAX does so then."""
+    jax.jit(jax.lax.linalg.lu).lower(jax.ShapeDtypeStruct((1, 1), float))
 
 
 def _one_by_one(function: Callable[..., Any]) -> Any:

@@ -6,6 +6,7 @@ from typing import NamedTuple
 
 import jax
 import jax.numpy as jnp
+import numpy as np
 from jax import Array
 
 from propmdao.records.pytrees import Scalar, record
@@ -17,7 +18,7 @@ from propmdao.structures.shapes import N_SHAPES, Shapes
 _MAX_STEPS = 60
 _TOLERANCE = 1.0e-9  # of the last step over the largest amplitude
 # Fractions of a Newton step that are tried, and what rounding may add to the potential.
-_FRACTIONS = 0.5 ** jnp.arange(12)
+_FRACTIONS = 0.5 ** np.arange(12)
 _ROUNDING = 1.0e-12
 _NOTHING = 1.0e-30  # largest amplitude of a blade without loads
 
@@ -95,7 +96,9 @@ def equilibrium(
         )
         energies = jax.lax.map(lambda f: total(fixed, q + f * dq), jnp.append(_FRACTIONS, 0.0))
         falls = energies[:-1] <= energies[-1] + _ROUNDING * jnp.abs(energies[-1])
-        fraction = jnp.where(falls.any(), _FRACTIONS[jnp.argmax(falls)], _FRACTIONS[-1])
+        fraction = jnp.where(
+            falls.any(), jnp.asarray(_FRACTIONS)[jnp.argmax(falls)], _FRACTIONS[-1]
+        )
         following = q + fraction * dq
         size = jnp.abs(dq).max() / jnp.maximum(jnp.abs(following).max(), _NOTHING)
         last = jnp.where(first, 1.0, size)

@@ -9,7 +9,8 @@ from typing import Any, NamedTuple
 
 import openmdao.api as om
 
-from propmdao.components.bases.jax_component import JaxComponent, copied
+from propmdao.components.bases.function_at_points import copied
+from propmdao.components.bases.jax_component import JaxComponent
 from propmdao.components.drivers.evaluation.candidate import Array
 from propmdao.components.drivers.evaluation.model_run import (
     ModelRun,

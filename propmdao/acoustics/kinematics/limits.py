@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import jax.numpy as jnp
 import numpy as np
+from jax import Array
 from numpy.typing import ArrayLike
 
 from propmdao.acoustics.kinematics.observers import directions
 from propmdao.records.air import Air
 from propmdao.records.states import RotorState
+from propmdao.runtime.compilation import compiled
 
 
 def require_subsonic_tip(radius: float, state: RotorState) -> None:
@@ -25,12 +28,17 @@ def require_subsonic_tip(radius: float, state: RotorState) -> None:
     ValueError
         If the relative tip Mach number is 1 or more: Formulation 1A is singular there.
     """
-    mach = float(state.tip_mach(radius))
+    mach = float(_tip_mach(radius, state))
     if not mach < 1:
         raise ValueError(
             f"relative tip Mach number must be below 1 for Formulation 1A; it is {mach:.3f} "
             f"(radius {radius:g} m, {state.rotation_speed:g} rad/s, {state.speed:g} m/s)"
         )
+
+
+@compiled
+def _tip_mach(radius: float, state: RotorState) -> Array:
+    return jnp.asarray(state.tip_mach(radius))
 
 
 def require_air(air: Air) -> None:

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from scipy.interpolate import PchipInterpolator
 
 from propmdao.acoustics.levels.decibels import level_db, mean_square
+from propmdao.runtime.compilation import compiled
 
 #: From the middle of a third octave to its edge, as a factor (IEC 61260-1, base ten).
 HALF_BAND = 10**0.05
@@ -266,6 +267,7 @@ def third_octave(
     return 1000 * 10 ** (bands / 10), np.asarray(level_db(energy[..., turning] @ membership))
 
 
+@compiled
 def band_number(frequency_hz: ArrayLike) -> Array:
     """Number of the third octave that holds a frequency: k of the band around 1000 * 10**(k/10) Hz.
 

@@ -61,12 +61,12 @@ class RotorLoads:
     @property
     def hub_force(self) -> Array:
         """Mean force of all blades on the hub, in the axes of `TiltedLoads`, (3,) [N]."""
-        return jnp.array([0.0, 0.0, 1.0]) * self.thrust
+        return self.thrust * np.array([0.0, 0.0, 1.0])
 
     @property
     def hub_moment(self) -> Array:
         """Mean moment of all blades on the hub about the rotor's centre, (3,) [N m]."""
-        return jnp.array([0.0, 0.0, -1.0]) * self.torque
+        return self.torque * np.array([0.0, 0.0, -1.0])
 
 
 @record

@@ -1,7 +1,7 @@
 """What a command tells of its way, on stderr.
 
-Lines are log records of the logger ``propmdao``; a march in time has one line that is overwritten.
-``--quiet`` leaves out both.
+Lines are log records of the logger ``propmdao``; compilation and a march in time have one line each
+that is overwritten. ``--quiet`` leaves out all of them.
 """
 
 from __future__ import annotations
@@ -11,15 +11,19 @@ import logging
 import math
 import sys
 import threading
+import time
 from collections.abc import Iterator
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any, TextIO
 
 from propmdao.runtime.terminal import print_line
 
 if TYPE_CHECKING:
     from propmdao.aerodynamics.solutions.marching.marched_loads import MarchProgress, Progress
 
-_PATIENCE = 2.0  # s
+_PATIENCE, _TICK = 1.0, 0.1  # s
+# Events of JAX: a program is asked for that the cache may have, and a program is there.
+_BEGINS = "/jax/compilation_cache/compile_requests_use_cache"
+_ENDS = "/jax/core/compile/backend_compile_duration"
 LOGGER = logging.getLogger("propmdao")
 
 
@@ -56,23 +60,84 @@ def progress(text: str) -> None:
 
 
 @contextlib.contextmanager
-def telling_of_long_work(name: str) -> Iterator[None]:
-    """Tell somebody at a terminal after two seconds that work goes on, and what may take so long.
+def telling_of_compilation(name: str) -> Iterator[None]:
+    """Tell somebody at a terminal for how long code has been compiled, while it is.
+
+    The line is overwritten and then taken away. Nothing is said of what is read from the cache, nor
+    where there is none: each run compiles there.
 
     Parameters
     ----------
     name : str
         Name of the command, with which the line begins.
     """
-    text = f"{name}: working; what a machine runs for the first time is compiled, up to a minute"
-    timer = threading.Timer(_PATIENCE, progress, [text])
-    timer.daemon = True
-    if sys.stderr is not None and sys.stderr.isatty():
-        timer.start()
+    if (stream := _watched_stream()) is None:
+        yield
+        return
+    line, over = _CompilationLine(name, stream), threading.Event()
+    ticking = threading.Thread(target=line.tick_until, args=(over,), daemon=True)
+    ticking.start()
     try:
         yield
     finally:
-        timer.cancel()
+        over.set()
+        ticking.join()
+
+
+class _CompilationLine:
+    """Line that counts the seconds in which something is compiled, in whatever thread."""
+
+    def __init__(self, name: str, stream: TextIO) -> None:
+        self._text = f"{name}: compiling, once on this machine: "
+        self._stream, self._lock = stream, threading.Lock()
+        self._threads: set[int] = set()  # which compile
+        self._since = self._spent = 0.0
+        self._shown = ""
+
+    def tick_until(self, over: threading.Event) -> None:
+        """Show the seconds, again and again."""
+        while "jax" not in sys.modules or not hasattr(sys.modules["jax"], "monitoring"):
+            if over.wait(_TICK):
+                return
+        monitoring = sys.modules["jax"].monitoring
+        monitoring.register_event_listener(self._begin)
+        monitoring.register_event_duration_secs_listener(self._end)
+        while not over.wait(_TICK):
+            with self._lock:
+                seconds = self._spent + time.monotonic() - self._since
+                if self._threads and seconds > _PATIENCE:
+                    self._show(f"{self._text}{seconds:.0f} s")
+        monitoring.unregister_event_listener(self._begin)
+        monitoring.unregister_event_duration_listener(self._end)
+
+    def _begin(self, event: str, **_: Any) -> None:
+        if event == _BEGINS:
+            with self._lock:
+                self._since = self._since if self._threads else time.monotonic()
+                self._threads.add(threading.get_ident())
+
+    def _end(self, event: str, _duration: float, **_: Any) -> None:
+        if event == _ENDS:
+            with self._lock:
+                self._threads.discard(threading.get_ident())
+                if not self._threads:
+                    self._spent += time.monotonic() - self._since
+                    self._show("")
+
+    def _show(self, text: str) -> None:
+        if text != self._shown:
+            print(f"\r{text:<{len(self._shown)}}", end="", file=self._stream, flush=True)
+            if not text:
+                print("\r", end="", file=self._stream, flush=True)
+            self._shown = text
+
+
+def _watched_stream() -> TextIO | None:
+    """Standard error, where it is a terminal and progress is not left out."""
+    stream = sys.stderr
+    if stream is None or not stream.isatty() or not LOGGER.isEnabledFor(logging.INFO):
+        return None
+    return stream
 
 
 def progress_line() -> Progress | None:
@@ -84,8 +149,7 @@ def progress_line() -> Progress | None:
         To be called after every step; None where nobody looks: standard error is no terminal, or
         progress is left out.
     """
-    stream = sys.stderr
-    if stream is None or not stream.isatty() or not LOGGER.isEnabledFor(logging.INFO):
+    if (stream := _watched_stream()) is None:
         return None
 
     def show(march: MarchProgress) -> None:

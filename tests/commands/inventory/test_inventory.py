@@ -1,21 +1,23 @@
-"""``show``, ``doctor``, ``completion``, and what is said of long work."""
+"""``show``, ``doctor``, ``warm-up`` and ``completion``."""
 
 from __future__ import annotations
 
-import io
 import json
-import logging
+import os
+import subprocess
 import sys
-import time
 from collections.abc import Callable
 from pathlib import Path
 
+import numpy as np
 import pytest
 
+from propmdao.commands.inventory import warm_up_command
 from propmdao.commands.inventory.doctor_command import EXTRAS
-from propmdao.commands.output import progress as talk
 from propmdao.commands.program import build_parser, main
 from propmdao.formats.propellers import load_propeller
+from propmdao.propeller.description import Propeller
+from propmdao.runtime.caches import FOLDER_VARIABLE
 
 PROPELLER = "apcsf_11x4.7"
 
@@ -73,28 +75,49 @@ def test_completion_without_shtab_is_one_line(
     assert "pip install 'propmdao[completion]'" in refused("completion", "bash")
 
 
+def test_warm_up_tells_what_it_has_compiled(
+    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    monkeypatch.setenv(FOLDER_VARIABLE, str(tmp_path))
+    seen: list[object] = []
+
+    def works(propeller: Propeller, observers: np.ndarray) -> dict[str, Callable[[], None]]:
+        return {"all there is": lambda: seen.append((propeller.name, len(observers)))}
+
+    monkeypatch.setattr(warm_up_command, "_works", works)
+    assert main(["warm-up"]) == 0
+    assert main(["warm-up", "apce_10x5", "--arc", "2", "-45", "0"]) == 0
+    assert seen == [(PROPELLER, 1), ("apce_10x5", 2)]
+    lines = capsys.readouterr().out.splitlines()
+    assert lines[0].startswith("all there is: 0.0 s")
+    assert lines[1].startswith("all: 0.") and lines[1].endswith(f"kept in {tmp_path}")
+
+
+def test_warm_up_is_refused_where_it_is_for_nothing(
+    refused: Callable[..., str], monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    assert "observer 1 is inside the source region" in refused("warm-up", "--arc", "0.1", "0")
+    (tmp_path / "file").write_text("")
+    monkeypatch.setenv(FOLDER_VARIABLE, str(tmp_path / "file"))
+    assert "no cache can be written: PROPMDAO_CACHE_DIR" in refused("warm-up")
+
+
+@pytest.mark.slow
+def test_after_a_warm_up_nothing_is_compiled(tmp_path: Path) -> None:
+    environment = {**os.environ, FOLDER_VARIABLE: str(tmp_path)}
+
+    def run(command: str) -> int:
+        arguments = [sys.executable, "-m", "propmdao", *command.split()]
+        subprocess.run(arguments, env=environment, capture_output=True, check=True)
+        return sum(len(list((tmp_path / name).rglob("*"))) for name in ("jax", "programs"))
+
+    n_files = run("warm-up apce_10x5 --arc 2 -45 0")
+    assert n_files > 20
+    for asked in ("--rpm 5000", "--thrust 1.5", "--rpm 5000 --broadband"):
+        assert run(f"analyze apce_10x5 {asked} --speed 8 --arc 1.5 -60 10") == n_files, asked
+
+
 def test_every_command_can_be_quiet() -> None:
     (commands,) = (action for action in build_parser()._actions if isinstance(action.choices, dict))
     for name, command in commands.choices.items():
         assert "--quiet" in command.format_help(), name
-
-
-class Terminal(io.StringIO):
-    def isatty(self) -> bool:
-        return True
-
-
-def test_long_work_is_told_to_who_sits_at_a_terminal(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(talk, "_PATIENCE", 0.01)
-
-    def said(stream: io.StringIO, is_quiet: bool, seconds: float) -> str:
-        monkeypatch.setattr(sys, "stderr", stream)
-        talk.tell_progress(is_quiet)
-        with talk.telling_of_long_work("propmdao analyze"):
-            time.sleep(seconds)
-        return stream.getvalue()
-
-    assert said(Terminal(), False, 0.3).startswith("propmdao analyze: working; ")
-    assert said(Terminal(), True, 0.3) == ""
-    assert said(io.StringIO(), False, 0.3) == ""
-    assert logging.getLogger("propmdao").handlers

@@ -1,10 +1,14 @@
 """How far a command is, on stderr."""
 
 import io
+import threading
+import time
 
+import jax
 import pytest
 
 from propmdao.aerodynamics.solutions.marching.marched_loads import MarchProgress
+from propmdao.commands.output import progress
 from propmdao.commands.output.progress import progress_line, progress_text, tell_progress
 
 BEGUN = MarchProgress(1, 144, 0.1, float("nan"), 80 * 2**20)
@@ -29,3 +33,42 @@ def test_the_line_is_overwritten_on_a_terminal_and_nowhere_else(monkeypatch: pyt
     assert len(first) == 78 and second.endswith("\n")
     tell_progress(is_quiet=True)
     assert progress_line() is None
+
+
+class Terminal(io.StringIO):
+    def isatty(self) -> bool:
+        return True
+
+
+def compile_for(seconds: float) -> None:
+    """Tell of a compilation as JAX does."""
+    jax.monitoring.record_event(progress._BEGINS)
+    time.sleep(seconds)
+    jax.monitoring.record_event_duration_secs(progress._ENDS, seconds)
+
+
+def test_compilation_is_told_to_who_sits_at_a_terminal(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(progress, "_PATIENCE", 0.1)
+    monkeypatch.setattr(progress, "_TICK", 0.01)
+
+    def said(stream: io.StringIO, is_quiet: bool, n_threads: int = 1) -> str:
+        monkeypatch.setattr("sys.stderr", stream)
+        tell_progress(is_quiet)
+        with progress.telling_of_compilation("propmdao analyze"):
+            time.sleep(0.2)
+            threads = [threading.Thread(target=compile_for, args=(0.6,)) for _ in range(n_threads)]
+            for thread in threads:
+                thread.start()
+            for thread in threads:
+                thread.join()
+            compile_for(0.6)
+        compile_for(0.2)  # of which nobody is told
+        return stream.getvalue()
+
+    for n_threads in (1, 2):  # side by side takes no longer
+        line = said(Terminal(), False, n_threads)
+        text = "propmdao analyze: compiling, once on this machine: 1 s"
+        assert line.count(text) == 2  # shown, taken away, shown again
+        assert line.endswith("\r" + " " * len(text) + "\r") and "\n" not in line
+    assert said(Terminal(), True) == ""
+    assert said(io.StringIO(), False) == ""

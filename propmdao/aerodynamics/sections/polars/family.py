@@ -87,6 +87,7 @@ def section_tables(
     return PolarTable(polars.alpha, polars.log_re, values, polars.mach, thickness)
 
 
+@compiled
 def blade_tables(polars: SectionPolars, blade: Blade, span: SpanInterpolation) -> PolarTable:
     """Interpolate the polars of a blade's sections to the radii of a span interpolation.
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import jax
 import jax.numpy as jnp
+import numpy as np
 
 #: Mach number up to which the correction of lift and moment grows; beyond, shocks make it
 #: meaningless.
@@ -15,7 +16,7 @@ KORN_FACTOR = 0.87
 #: From the critical Mach number to that of drag divergence, where Lock's drag has the slope 0.1.
 DIVERGENCE_MARGIN = (0.1 / 80.0) ** (1.0 / 3.0)
 #: The corrections are whole up to the first angle of attack and gone from the second [rad].
-ATTACHED, SEPARATED = jnp.radians(12.0), jnp.radians(30.0)
+ATTACHED, SEPARATED = np.radians(12.0), np.radians(30.0)
 # Lift coefficient below which the onset of drag rise no longer feels the sign of lift.
 _LITTLE_LIFT = 0.05
 

@@ -8,6 +8,7 @@ import warnings
 from collections.abc import Mapping
 from pathlib import Path
 
+import jax
 import jax.numpy as jnp
 import numpy as np
 import numpy.typing as npt
@@ -150,15 +151,16 @@ def polars_for(
         camber, thickness = np.array([-1.0, 1.0]), np.array([0.0, 1.0])
     over_mach = () if mach is None else mach.shape
     full = (camber.size, thickness.size, 3, *over_mach, log_re.size, ALPHA.size)
-    return SectionPolars(
-        camber=jnp.asarray(camber),
-        thickness=jnp.asarray(thickness),
-        log_re=jnp.asarray(log_re),
-        alpha=jnp.asarray(ALPHA),
-        values=jnp.asarray(np.stack([np.broadcast_to(values, full) for values in resampled])),
-        weights=jnp.asarray(np.stack(list(weights.values()), axis=1)),
-        mach=None if mach is None else jnp.asarray(mach),
-    )
+    arrays = {
+        "camber": camber,
+        "thickness": thickness,
+        "log_re": log_re,
+        "alpha": ALPHA,
+        "values": np.stack([np.broadcast_to(values, full) for values in resampled]),
+        "weights": np.stack(list(weights.values()), axis=1),
+        "mach": mach,
+    }
+    return SectionPolars(**jax.device_put(arrays))  # jnp.asarray compiles for each shape
 
 
 def _substitute_message(name: str) -> str:
