@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import dataclasses
+from collections.abc import Callable
+from functools import partial
 from typing import Any, Unpack
 
 import jax
@@ -31,7 +33,7 @@ from propmdao.aerodynamics.solutions.edgewise import (
 from propmdao.aerodynamics.solutions.marching.marched_loads import Progress
 from propmdao.aerodynamics.solutions.period import tilted_elements
 from propmdao.aerodynamics.solutions.result import RotorLoads, TiltedLoads
-from propmdao.aerodynamics.trim import Solver, rotation_bounds, trim
+from propmdao.aerodynamics.trim import Solver, rotation_bounds, solve_for_thrust, trim
 from propmdao.aerodynamics.wakes.helical import wake_transport
 from propmdao.analysis.elastic.deflections import Solved, deflected
 from propmdao.analysis.elastic.materials import material_of
@@ -49,7 +51,10 @@ from propmdao.records.panels import Panels
 from propmdao.records.states import OperatingPoint, RotorState
 from propmdao.records.units import RAD_PER_S
 from propmdao.records.wake_law import WakeGrid
+from propmdao.runtime.compilation import compile_ahead
 from propmdao.runtime.finite import require_finite
+
+_Begin = Callable[[Any], None]
 
 
 def analyze(
@@ -172,11 +177,15 @@ def analysis_of(
     """
     point, model, listening = request.point, request.model, request.listening
     fidelity, elastic = model.fidelity, model.loads.elastic
+    paths = sound_paths(listening.observers, listening.surroundings, point.incidence_deg)
+    points = paths.reshape(-1, 3)
 
     def held(propeller: Propeller) -> Solved:
         """Loads of a propeller that is held in its shape."""
         shape = modelled.held(propeller)
-        return shape.solved(shape.case(point), *_loads(shape.case(point), request, progress))
+        case = shape.case(point)
+        begin = partial(_begin_tones, shape.panels, case, points, fidelity.n_harmonics)
+        return shape.solved(case, *_loads(case, request, progress, begin))
 
     deflection = None
     if elastic is not None:
@@ -190,8 +199,6 @@ def analysis_of(
         warn_outside_sections(modelled.polars, blade, modelled.changed.r_over_R)
         _warn_outside_polars(case, loads)
 
-    paths = sound_paths(listening.observers, listening.surroundings, point.incidence_deg)
-    points = paths.reshape(-1, 3)
     sound = _tones(panels, loads, case.rotor.n_blades, state, points, fidelity.n_harmonics)
     noise = None
     if (broadband := model.noise.broadband) is not None:
@@ -226,13 +233,15 @@ def analysis_of(
     return analysis
 
 
-def _loads(case: RotorCase, request: Request, progress: Progress | None) -> tuple[Any, RotorState]:
+def _loads(
+    case: RotorCase, request: Request, progress: Progress | None, begin: _Begin
+) -> tuple[Any, RotorState]:
     """Loads at the operating point by the model that is asked for, and the rotor's state there."""
     point, model = request.point, request.model
     if model.loads.unsteady is not None:
         return marched(case, point, model, progress)
     if point.incidence_deg == 0.0:
-        return _solve(blade_element if model.loads.blade_element else axial, case, point)
+        return _solve(blade_element if model.loads.blade_element else axial, case, point, begin)
     if not model.loads.blade_element:
         return _tilted(case, point, model)
     tilted, state = _solve(tilted_elements, case, point)
@@ -240,16 +249,27 @@ def _loads(case: RotorCase, request: Request, progress: Progress | None) -> tupl
     return tilted, state
 
 
-def _solve(solver: Solver, case: RotorCase, point: OperatingPoint) -> tuple[Any, RotorState]:
-    """Loads at the operating point, and the state of the rotor there."""
+def _solve(
+    solver: Solver, case: RotorCase, point: OperatingPoint, begin: _Begin = lambda _: None
+) -> tuple[Any, RotorState]:
+    """Loads at the operating point, and the state of the rotor there.
+
+    While the loads are compiled, `begin` is called with the shapes of what they will be.
+    """
     radius, speed = float(case.rotor.radius), float(point.speed)
     if point.thrust is not None:
-        rotation_speed, loads = trim(solver, case, point.thrust, rotation_bounds(radius, speed))
+        bounds, thrust = rotation_bounds(radius, speed), float(point.thrust)
+        compile_ahead(
+            solve_for_thrust, solver, case, thrust, bounds, then=lambda found: begin(found.loads)
+        )
+        rotation_speed, loads = trim(solver, case, thrust, bounds)
         return loads, point.at(rotation_speed)
     assert point.rotation_speed is not None
     state = point.at(point.rotation_speed)
     require_subsonic_tip(radius, state)
-    return solver.solve(case.turning(point.rotation_speed)), state
+    case = case.turning(point.rotation_speed)
+    compile_ahead(solver.solve, case, then=begin)
+    return solver.solve(case), state
 
 
 def _tilted(case: RotorCase, point: OperatingPoint, model: Model) -> tuple[TiltedLoads, RotorState]:
@@ -268,6 +288,17 @@ def _tilted(case: RotorCase, point: OperatingPoint, model: Model) -> tuple[Tilte
         loads, state, ratio = solved(longer(grid))
     warn_if_fast(ratio, stacklevel=4)
     return loads, state
+
+
+def _begin_tones(
+    panels: Panels, case: RotorCase, points: np.ndarray, n_harmonics: int, loads: Any
+) -> None:
+    """Begin to compile the tones of loads whose shapes are known: what `_tones` will call."""
+    if isinstance(loads, RotorLoads) and len(points):
+        ends, state = rings_of(points).position, case.state
+        compile_ahead(
+            tones, panels, loads.point_loads, case.rotor.n_blades, state, ends, n_harmonics
+        )
 
 
 def _tones(

@@ -63,53 +63,62 @@ def compiled(
     names = {static_argnames} if isinstance(static_argnames, str) else set(static_argnames or ())
     names |= {parameters[place] for place in static_argnums or ()}
 
-    def split(args: tuple[Any, ...], kwargs: dict[str, Any]) -> _Arguments:
-        places = list(zip_longest(parameters[: len(args)], args))  # *args have no names
-        positional = tuple(a if k in names else _of_one_type(a) for k, a in places)
-        named = {k: a if k in names else _of_one_type(a) for k, a in kwargs.items()}
-        moving = zip(places, positional, strict=True)
-        return _Arguments(
-            positional,
-            named,
+    def of_one_type(args: tuple[Any, ...], kwargs: dict[str, Any]) -> tuple[Any, dict[str, Any]]:
+        places = zip_longest(parameters[: len(args)], args)  # *args of a function have no names
+        by_place = tuple(a if k in names else _of_one_type(a) for k, a in places)
+        return by_place, {k: a if k in names else _of_one_type(a) for k, a in kwargs.items()}
+
+    def parted(args: tuple[Any, ...], kwargs: dict[str, Any]) -> _Parted:
+        places = list(zip_longest(parameters[: len(args)], args))
+        return _Parted(
             tuple((k, a) for k, a in [*places, *kwargs.items()] if k in names),
-            tuple(a for (k, _), a in moving if k not in names),
-            {k: a for k, a in named.items() if k not in names},
+            tuple(a for k, a in places if k not in names),
+            {k: a for k, a in kwargs.items() if k not in names},
         )
 
-    begun: dict[Hashable, Future[None]] = {}
+    begun: dict[Hashable, Future[None]] = {}  # ahead, and not called yet
+    over: set[Hashable] = set()
 
     @wraps(function)
     def call(*args: _Parameters.args, **kwargs: _Parameters.kwargs) -> _Result:
         if _place_in_traces() != _OUTSIDE:
             return as_part(*args, **kwargs)
-        given = split(args, kwargs)
-        if begun and (compilation := begun.get(given.kinds)):
+        by_place, by_name = of_one_type(args, kwargs)
+        if begun and (compilation := begun.get(kinds := parted(by_place, by_name).kinds)):
             compilation.result()  # its own error is met below, where it belongs
+            over.add(kinds)
+            begun.pop(kinds, None)
         if are_kept():
+            parts = parted(by_place, by_name)
             program = kept_program(
-                call, given.fixed, given.moving, lambda: alone().lower(*given.args, **given.kwargs)
+                call, parts.fixed, parts.moving, lambda: alone().lower(*by_place, **by_name)
             )
             if program is not None:
-                return program(*given.by_place, **given.by_name)
-        return alone()(*given.args, **given.kwargs)
+                return program(*parts.by_place, **parts.by_name)
+        return alone()(*by_place, **by_name)
 
     def lower(*args: Any) -> Any:
-        given = split(args, {})
-        return alone().lower(*given.args, **given.kwargs)
+        by_place, _ = of_one_type(args, {})
+        return alone().lower(*by_place)
 
     call.lower = lower  # type: ignore[attr-defined]
 
-    def ahead(then: Callable[[Any], None], args: tuple[Any, ...], kwargs: dict[str, Any]) -> None:
-        given = split(args, kwargs)
+    def ahead(then: Callable[[Any], None], args: tuple[Any, ...]) -> None:
+        by_place, _ = of_one_type(args, {})
+        parts = parted(by_place, {})
+
+        def lower() -> Any:
+            traced = alone().trace(*by_place)
+            then(jax.tree.map(_shape, traced.out_info))
+            return traced.lower()
 
         def compile_it() -> None:
             with suppress(Exception):
-                traced = alone().trace(*given.args, **given.kwargs)
-                then(jax.tree.map(_shape, traced.out_info))
-                traced.lower().compile()
+                if not are_kept() or kept_program(call, parts.fixed, parts.moving, lower) is None:
+                    lower().compile()
 
-        if given.kinds not in begun:
-            begun[given.kinds] = _helpers().submit(compile_it)
+        if (kinds := parts.kinds) not in over and kinds not in begun:
+            begun[kinds] = _helpers().submit(compile_it)
 
     call.ahead = ahead  # type: ignore[attr-defined]
     return call
@@ -123,7 +132,7 @@ def compile_ahead(
     Parameters
     ----------
     function : callable
-        Function that `compiled` has made.
+        Function that `compiled` has made; nothing is begun for any other.
     *args
         Arguments like those that it will be called with, by place alone; shapes and types are
         enough for those that are not compiled in. The same kinds begin once in a process.
@@ -131,7 +140,8 @@ def compile_ahead(
         Called in that thread with the shapes of what the function returns, as soon as they are
         known.
     """
-    function.ahead(then, args, {})  # type: ignore[attr-defined]
+    if ahead := getattr(function, "ahead", None):
+        ahead(then, args)
 
 
 def memory_of(function: Callable[..., Any], *args: Any) -> int:
@@ -156,11 +166,9 @@ def memory_of(function: Callable[..., Any], *args: Any) -> int:
     )
 
 
-class _Arguments(NamedTuple):
-    """Arguments of a call as they are handed on, and what is compiled in apart from the others."""
+class _Parted(NamedTuple):
+    """Arguments of a call, those that are compiled in apart from the others."""
 
-    args: tuple[Any, ...]
-    kwargs: dict[str, Any]
     fixed: tuple[Hashable, ...]
     by_place: tuple[Any, ...]
     by_name: dict[str, Any]

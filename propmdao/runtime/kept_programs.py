@@ -127,7 +127,7 @@ def kind_of(leaf: Any) -> Hashable:
         Shape and type; None for what was put on a device, or is neither.
     """
     if isinstance(leaf, np.ndarray | np.generic | jax.Array | jax.ShapeDtypeStruct):
-        return None if getattr(leaf, "committed", False) else (leaf.shape, leaf.dtype.name)
+        return None if getattr(leaf, "committed", False) else (leaf.shape, leaf.dtype)
     return type(leaf).__name__ if isinstance(leaf, bool | int | float | complex) else None
 
 
