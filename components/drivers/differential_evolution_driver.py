@@ -80,8 +80,9 @@ class DifferentialEvolutionDriver(Driver):
     - With ``design_time_limit`` a process that takes longer over a design is ended and replaced;
       the design has failed. So has one whose process dies.
     - With ``designs_at_once`` the components of this package evaluate so many designs in one
-      compiled call, which is what an accelerator is for; on two cores eight are a third faster than
-      one after the other and workers twice as fast. A blade takes some 20 MB. Other components,
+      compiled call, which is what an accelerator is for, shared out to all devices that JAX has; on
+      two cores eight are a third faster than one after the other and workers twice as fast. A blade
+      takes some 20 MB; more than a device has is refused before the work. Other components,
       ``ExecComp`` say, run at one design after the other. The numbers are those of single runs to
       rounding, so that a long search may take another path.
     - Cases from a checkpoint are recorded again; outputs that it does not hold are nan, which are

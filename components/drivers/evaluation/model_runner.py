@@ -103,7 +103,8 @@ def declare_runner_options(options: OptionsDictionary) -> None:
         1,
         types=int,
         lower=1,
-        desc="Number of designs that components of JAX evaluate in one call of this process.",
+        desc="Number of designs that components of JAX evaluate in one call of this process, "
+        "shared out to all of its devices.",
     )
     declare(
         "design_time_limit",
