@@ -29,7 +29,7 @@ KEPT = json.loads(FILE.read_text(encoding="utf-8"))
 # Relative to the largest number of the array. Roots are found to 1e-9 of the induced velocity, and
 # XLA adds in another order where code moves; the first is what is left of both in tones.
 LARGEST_DIFFERENCE, LEVEL_DB = 1e-7, 1e-6
-FLOOR_DB = -120.0  # below it stands what rounding leaves
+FLOOR_DB = -100.0  # far below what can be heard; there stands what rounding and rings leave
 SILENCE = 4e-30  # mean square at -200 dB [Pa^2]
 RESULTS = "rpm J thrust torque shaft_power CT CQ CP eta converged failure".split()
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from functools import partial
 from typing import NamedTuple
 
@@ -14,7 +13,8 @@ from jax.typing import ArrayLike
 
 from propmdao.acoustics.kinematics.emission import emission_distance
 from propmdao.acoustics.signals import Tones
-from propmdao.acoustics.sources.harmonic_sums import cos_sin, harmonic_sums
+from propmdao.acoustics.sources.harmonic_sums import harmonic_sums
+from propmdao.acoustics.sources.source_rings import Rings, Sources, gathered
 from propmdao.records.loads import PointLoads
 from propmdao.records.panels import Panels
 from propmdao.records.states import RotorState
@@ -39,7 +39,8 @@ def tones(
         P_m = (B / N) sum_j sum_elements p(tau_j) exp(1j m B Omega t(tau_j)) (dt / dtau)_j
 
     over N azimuths of blade 1, with t = tau + d / c. The other blades add the same at the multiples
-    of B and cancel in between.
+    of B and cancel in between. Elements are gathered on rings first (`source_rings`), which leaves
+    of the harmonics what their sum has, to 1e-6 of those that matter.
 
     Parameters
     ----------
@@ -74,145 +75,131 @@ def tones(
     F. Farassat, Derivation of Formulations 1 and 1A of Farassat, NASA TM-2007-214853.
     """
     air = state.air
-    operation = _Operation(
-        *(
-            jnp.asarray(q, float)
-            for q in (state.rotation_speed, state.speed, air.density, air.sound_speed)
-        )
+    omega, v, c = (
+        jnp.asarray(q, float) for q in (state.rotation_speed, state.speed, air.sound_speed)
     )
-    blade = _Blade(panels, loads)
-    sources = {name: source(blade, operation) for name, source in SOURCES.items()}
+    turning = omega != 0.0
+    # Lengths over c / Omega, the radius at which a blade would move at the speed of sound.
+    scale = jnp.where(turning, jnp.abs(omega), 1.0) / c
+    flight = _Flight(jnp.where(omega < 0.0, -1.0, 1.0), v / c)
+    rings = gathered([_panels(panels, omega, v), _forces(loads)], n_blades, n_harmonics)
 
-    @jax.checkpoint  # the reverse derivative recomputes one observer at a time: megabytes, not GiB
-    def amplitudes_at(observer: Array) -> dict[str, Array]:
-        return {
-            name: _fourier_integral(source, operation, n_blades, n_harmonics, observer)
-            for name, source in sources.items()
-        }
+    @jax.checkpoint  # the reverse derivative recomputes one observer at a time
+    def amplitudes_at(observer: Array) -> Array:
+        return _fourier_integral(rings, flight, scale, n_blades, observer)
 
     amplitudes = jax.lax.map(amplitudes_at, jnp.asarray(observers, float))
-    turning = operation.omega != 0
-    frequency_hz = n_blades * operation.omega / (2 * np.pi) * np.arange(1, n_harmonics + 1)
-    sound = Tones(frequency_hz, amplitudes).each(lambda p: jnp.where(turning, p, 0.0))
-    return sound.of_positive_frequency
+    parts = {
+        "thickness": jnp.where(turning, air.density * c * scale**2 * amplitudes[:, 0], 0.0),
+        "loading": jnp.where(turning, scale**2 * amplitudes[:, 1:].sum(axis=1), 0.0),
+    }
+    frequency_hz = n_blades * omega / (2 * np.pi) * np.arange(1, n_harmonics + 1)
+    return Tones(frequency_hz, parts).of_positive_frequency
 
 
-class _Blade(NamedTuple):
-    panels: Panels
-    loads: PointLoads
+class _Flight(NamedTuple):
+    """Sense of the rotation, 1 or -1, and Mach number of the flight along the shaft."""
 
-
-class _Operation(NamedTuple):
-    omega: Array
-    v: Array
-    rho: Array
-    c: Array
+    sense: Array
+    mach: Array
 
 
 class _Radiation(NamedTuple):
-    """One source and the direction in which its sound leaves, in the turning frame.
+    """Unit sources on rings and the direction in which their sound leaves; arrays (ring, azimuth).
 
-    d is Farassat's r, from the source at emission to the observer at reception, r his r-hat.
+    Lengths are over c / |Omega|. d is Farassat's r, from the source at emission to the observer at
+    reception; r, his r-hat, and the Mach number are along the radius, the azimuth and the shaft.
     """
 
     d: Array
     r: tuple[Array, Array, Array]
+    mach: tuple[Array | float, ...]
     m_r: Array
-    near: Array  # d Mdot_r + c (M_r - M^2)
+    near: Array  # (d Mdot_r + c (M_r - M^2)) / c
     spread: Array  # dt/dtau / (d^2 (1 - M_r)^3)
 
 
-# From the observer's position in the turning frame to 4 pi p dt/dtau and the distance d of each
-# source. What depends on the sources alone is computed once, outside the loop over azimuths.
-_Source = Callable[[Array, Array, Array], tuple[Array, Array]]
+def _panels(panels: Panels, omega: Array, v: Array) -> Sources:
+    """Panels as sources of thickness noise: their strength is v_n dS, which never changes."""
+    x, y, _ = panels.center.T
+    sx, sy, sz = panels.vector_area.T
+    v_n = omega * (x * sy - y * sx) + v * sz
+    return Sources(panels.center, v_n[None])
+
+
+def _forces(loads: PointLoads) -> Sources:
+    """Forces on the fluid as sources of loading noise."""
+    x, y, _ = loads.position.T
+    lx, ly, lz = loads.force.T
+    on_shaft = (x == 0.0) & (y == 0.0)  # where the radius is along x
+    x, y = jnp.where(on_shaft, 1.0, x), jnp.where(on_shaft, 0.0, y)
+    radius = jnp.sqrt(x**2 + y**2)
+    radial, along = (x * lx + y * ly) / radius, (x * ly - y * lx) / radius
+    return Sources(loads.position, jnp.stack([radial, along, lz]))
 
 
 def _fourier_integral(
-    source: _Source, operation: _Operation, n_blades: int, n_harmonics: int, observer: Array
+    rings: Rings, flight: _Flight, scale: Array, n_blades: int, observer: Array
 ) -> Array:
-    """Average ``p dt/dtau exp(1j n Omega t)`` of blade 1 over one turn, times B."""
+    """Average ``p dt/dtau exp(1j n Omega t)`` of blade 1 over one turn, times B, by component."""
+    n_harmonics = rings.weights.shape[-1]
     # The integrand holds harmonics up to n (1 + M), and some more in the near field.
     n_azimuths = 2 * n_harmonics * n_blades + 16
     azimuth = 2 * np.pi * np.arange(n_azimuths) / n_azimuths
-    # The observer turns back instead of the blade forward: every blade quantity stays constant.
-    x = observer[0] * np.cos(azimuth) + observer[1] * np.sin(azimuth)
-    y = observer[1] * np.cos(azimuth) - observer[0] * np.sin(azimuth)
-
-    @jax.checkpoint
-    def strength_and_phase(position: tuple[Array, Array]) -> tuple[Array, Array, Array]:
-        strength, d = source(*position, observer[2])
-        return strength, *cos_sin(n_blades * operation.omega / operation.c * d)
-
-    strength, cosine, sine = jax.lax.map(strength_and_phase, (x, y))
-    sums = harmonic_sums(strength, cosine, sine, n_harmonics)
-    turned = np.exp(1j * n_blades * np.outer(azimuth, np.arange(1, n_harmonics + 1)))
-    return n_blades / (4 * np.pi * n_azimuths) * jnp.sum(sums * turned, axis=0)
+    toward = _radiation(rings, flight, scale, azimuth, observer)
+    phase = n_blades * (flight.sense * toward.d + azimuth)
+    # (ring, component, azimuth)
+    strength = jnp.stack([_thickness(toward), *_loading(toward, flight)], axis=1)
+    sums = harmonic_sums(strength, phase[:, None], n_harmonics)
+    return n_blades / (4 * np.pi * n_azimuths) * jnp.sum(rings.weights * sums, axis=0)
 
 
-def _thickness(blade: _Blade, operation: _Operation) -> _Source:
-    """Thickness noise, rho v_n (d Mdot_r + c (M_r - M^2)) / (d^2 (1 - M_r)^3)."""
+def _thickness(toward: _Radiation) -> Array:
+    """Thickness noise over rho c, v_n (d Mdot_r / c + M_r - M^2) / (d^2 (1 - M_r)^3)."""
     # The other term, rho (vdot_n + v_ndot) / (d (1 - M_r)^2), is the change of v_n dS on a panel:
     # zero, since the surface is rigid.
-    x, y, z = blade.panels.center.T
-    sx, sy, sz = blade.panels.vector_area.T
-    v_n = operation.omega * (x * sy - y * sx) + operation.v * sz
-    radiation = _radiation(x, y, z, operation)
-
-    def pressure(*observer: Array) -> tuple[Array, Array]:
-        d, _, _, near, spread = radiation(*observer)
-        return operation.rho * v_n * near * spread, d
-
-    return pressure
+    return toward.near * toward.spread
 
 
-def _loading(blade: _Blade, operation: _Operation) -> _Source:
-    """Loading noise, the sum of three terms over c.
+def _loading(toward: _Radiation, flight: _Flight) -> tuple[Array, ...]:
+    """Loading noise of a force along each of the axes, the sum of three terms.
 
     The terms are::
 
-        ldot_r / (d (1 - M_r)^2)
-        c (l_r - l_M) / (d^2 (1 - M_r)^2)
-        l_r (d Mdot_r + c (M_r - M^2)) / (d^2 (1 - M_r)^3)
+        ldot_r / (c d (1 - M_r)^2)
+        (l_r - l_M) / (d^2 (1 - M_r)^2)
+        l_r (d Mdot_r / c + M_r - M^2) / (d^2 (1 - M_r)^3)
     """
-    omega, v, _, c = operation
-    x, y, z = blade.loads.position.T
-    lx, ly, lz = blade.loads.force.T
-    l_m = (omega * (ly * x - lx * y) + v * lz) / c
-    radiation = _radiation(x, y, z, operation)
-
-    def pressure(*observer: Array) -> tuple[Array, Array]:
-        d, r, m_r, near, spread = radiation(*observer)
-        l_r = lx * r[0] + ly * r[1] + lz * r[2]
-        ldot_r = omega * (lx * r[1] - ly * r[0])  # the force turns with the blade
-        # each term times d^2 (1 - M_r)^3, which `spread` takes out again
-        change = ldot_r * d * (1 - m_r)
-        near_field = c * (l_r - l_m) * (1 - m_r)
-        motion = l_r * near
-        return (change + near_field + motion) / c * spread, d
-
-    return pressure
-
-
-#: Sources of tones by their names in `Tones`, each a function of blade and operation.
-SOURCES = {"thickness": _thickness, "loading": _loading}
+    d, r, mach, m_r, near, spread = toward
+    # of l_r, since forces turn with the blade
+    rate: tuple[Array | float, ...] = flight.sense * r[1], -flight.sense * r[0], 0.0
+    # each term times d^2 (1 - M_r)^3, which `spread` takes out again
+    return tuple(
+        ((rate_i * d + r_i - mach_i) * (1 - m_r) + r_i * near) * spread
+        for r_i, mach_i, rate_i in zip(r, mach, rate, strict=True)
+    )
 
 
 def _radiation(
-    x: Array, y: Array, z: Array, operation: _Operation
-) -> Callable[[Array, Array, Array], _Radiation]:
-    omega, v, _, c = operation
-    m2 = (omega / c) ** 2 * (x**2 + y**2) + (v / c) ** 2
-    m_z = v / c
-
-    def toward(x_observer: Array, y_observer: Array, z_observer: Array) -> _Radiation:
-        dx, dy, dz = x_observer - x, y_observer - y, z_observer - z
-        d = emission_distance(m_z * dz, dx**2 + dy**2 + dz**2, m_z**2)
-        inverse = 1 / d
-        r = dx * inverse, dy * inverse, dz * inverse + m_z
-        m_r = omega / c * (x * r[1] - y * r[0]) + m_z * r[2]
-        near = -(omega**2) / c * (x * dx + y * dy) + c * (m_r - m2)
-        # dt/dtau = (1 - M_r) / (1 - M_observer,r)
-        spread = 1 / ((d * (1 - m_r)) ** 2 * (1 - m_z * r[2]))
-        return _Radiation(d, r, m_r, near, spread)
-
-    return toward
+    rings: Rings, flight: _Flight, scale: Array, azimuth: np.ndarray, observer: Array
+) -> _Radiation:
+    """Ways from rings to an observer, at azimuths of their sources."""
+    sense, m_z = flight
+    to_x, to_y, to_z = scale * observer
+    shape = rings.radius.size, azimuth.size
+    x = jnp.broadcast_to(scale * rings.radius[:, None], shape)
+    # The observer turns back instead of the source forward, which stays at azimuth 0.
+    dx = to_x * np.cos(azimuth) + to_y * np.sin(azimuth) - x
+    dy = jnp.broadcast_to(to_y * np.cos(azimuth) - to_x * np.sin(azimuth), shape)
+    dz = jnp.broadcast_to(to_z - scale * rings.height[:, None], shape)
+    # Derivatives by all that comes now are worked out before they are summed, not with each sum.
+    x, dx, dy, dz = jax.lax.optimization_barrier((x, dx, dy, dz))
+    d = emission_distance(m_z * dz, dx**2 + dy**2 + dz**2, m_z**2)
+    inverse = 1 / d
+    r = dx * inverse, dy * inverse, dz * inverse + m_z
+    m_azimuth = sense * x
+    m_r = m_azimuth * r[1] + m_z * r[2]
+    near = m_r - x**2 - m_z**2 - x * dx
+    # dt/dtau = (1 - M_r) / (1 - M_observer,r)
+    spread = 1 / ((d * (1 - m_r)) ** 2 * (1 - m_z * r[2]))
+    return _Radiation(d, r, (0.0, m_azimuth, m_z), m_r, near, spread)

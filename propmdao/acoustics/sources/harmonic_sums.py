@@ -7,13 +7,14 @@ form decides between 5 and 150 ms (two cores, 64 bit). Three things make it fast
   would compute the whole chain of powers again for each of them.
 - `cos_sin` is plain arithmetic that the compiler vectorises; XLA calls the library's scalar sine
   and cosine for 64-bit numbers, 10 ns each, more than everything else together.
-- whoever fills the arrays does it behind a loop (``lax.map`` over azimuths): across a loop XLA
-  cannot fuse that work into the reduction, whose inner loop is scalar.
+- what fills the arrays stays behind a barrier: XLA would fuse that work into the reduction, whose
+  inner loop is scalar.
 """
 
 from __future__ import annotations
 
 import math
+from functools import partial
 from typing import Any
 
 import jax
@@ -62,13 +63,14 @@ def _cos_sin_jvp(primals: tuple[Array], tangents: tuple[Array]) -> tuple[Any, An
     return (cosine, sine), (-sine * tangents[0], cosine * tangents[0])
 
 
-def harmonic_sums(strength: Array, cosine: Array, sine: Array, n_harmonics: int) -> Array:
+@partial(jax.custom_jvp, nondiff_argnums=(2,))
+def harmonic_sums(strength: Array, angle: Array, n_harmonics: int) -> Array:
     """Sum ``strength * exp(1j m angle)`` over the last axis, for m = 1 ... n_harmonics.
 
     Parameters
     ----------
-    strength, cosine, sine : (..., n) arrays
-        Real strength of each source; cosine and sine of its angle.
+    strength, angle : (..., n) arrays
+        Real strength of each source; its angle, below 1e6 in size [rad].
     n_harmonics : int
         Number of harmonics (static).
 
@@ -77,12 +79,43 @@ def harmonic_sums(strength: Array, cosine: Array, sine: Array, n_harmonics: int)
     (..., n_harmonics) complex array
         Sums for m = 1 ... n_harmonics.
     """
+    strength, cosine, sine = _apart(strength, angle)
     real, imag = strength * cosine, strength * sine
     terms = []
     for _ in range(n_harmonics):
         terms += [real, imag]
         real, imag = real * cosine - imag * sine, real * sine + imag * cosine
-    sums = _sum_each_p.bind(*terms)
+    return _sum_each(terms)
+
+
+@harmonic_sums.defjvp
+def _harmonic_sums_jvp(
+    n_harmonics: int, primals: tuple[Array, Array], tangents: tuple[Array, Array]
+) -> tuple[Array, Array]:
+    """Sum ``(d strength + 1j m strength d angle) exp(1j m angle)`` in a second pass.
+
+    Step by step through the powers, a reverse derivative would keep every one of them.
+    """
+    strength, cosine, sine = _apart(*primals)
+    d_strength, d_angle = tangents
+    d_turn = strength * d_angle
+    real, imag = cosine, sine
+    terms = []
+    for m in range(1, n_harmonics + 1):
+        terms += [d_strength * real - d_turn * (m * imag), d_strength * imag + d_turn * (m * real)]
+        real, imag = real * cosine - imag * sine, real * sine + imag * cosine
+    return harmonic_sums(*primals, n_harmonics), _sum_each(terms)
+
+
+def _apart(strength: Array, angle: Array) -> tuple[Array, Array, Array]:
+    """Strength, cosine and sine, not to be fused into the sums."""
+    apart: tuple[Array, Array, Array] = jax.lax.optimization_barrier((strength, *cos_sin(angle)))
+    return apart
+
+
+def _sum_each(terms: list[Array]) -> Array:
+    """Sum real and imaginary terms over the last axis, each in the same pass."""
+    sums = _sum_each_p.bind(*jnp.broadcast_arrays(*terms))
     return jnp.stack(sums[::2], -1) + 1j * jnp.stack(sums[1::2], -1)
 
 
@@ -92,7 +125,7 @@ _sum_each_p = Primitive("sum_each")
 _sum_each_p.multiple_results = True
 
 
-def _sum_each(*arrays: Array) -> Any:
+def _sums(*arrays: Array) -> Any:
     def add(a: Any, b: Any) -> Any:
         return tuple(x + y for x, y in zip(a, b, strict=True))
 
@@ -113,10 +146,10 @@ def _batch(arrays: Any, axes: Any) -> Any:
     return _sum_each_p.bind(*front), [0] * len(front)
 
 
-_sum_each_p.def_impl(compiled(_sum_each))
+_sum_each_p.def_impl(compiled(_sums))
 _sum_each_p.def_abstract_eval(
     lambda *arrays: [jax.core.ShapedArray(a.shape[:-1], a.dtype) for a in arrays]
 )
-mlir.register_lowering(_sum_each_p, mlir.lower_fun(_sum_each, multiple_results=True))
+mlir.register_lowering(_sum_each_p, mlir.lower_fun(_sums, multiple_results=True))
 ad.deflinear2(_sum_each_p, _transpose)
 batching.primitive_batchers[_sum_each_p] = _batch

@@ -22,7 +22,7 @@ from numpy.typing import ArrayLike
 from propmdao.acoustics.kinematics.limits import require_air, require_subsonic_tip
 from propmdao.acoustics.kinematics.motion import Poses, poses, rotation, translation
 from propmdao.acoustics.signals import Tones
-from propmdao.acoustics.sources.harmonic_sums import cos_sin, harmonic_sums
+from propmdao.acoustics.sources.harmonic_sums import harmonic_sums
 from propmdao.acoustics.sources.kernels import TONAL_SOURCES, Kernel, emission
 from propmdao.acoustics.sources.moving_sources import (
     AperiodicLoads,
@@ -263,7 +263,7 @@ def _fourier_integral(
     @jax.checkpoint  # reverse derivatives recompute one observer at one azimuth at a time
     def amplitudes_at(observer: Array) -> Array:
         @jax.checkpoint
-        def strength_and_phase(j: Array) -> tuple[Array, Array, Array]:
+        def strength_and_phase(j: Array) -> tuple[Array, Array]:
             def now(q: Array) -> Array:  # what does not change has one time only
                 return jax.lax.dynamic_slice_in_dim(q, j % q.shape[2], 1, axis=2)
 
@@ -275,12 +275,11 @@ def _fourier_integral(
                 velocity,
                 sound_speed,
             )
-            phase = cos_sin(step * omega / sound_speed * emitted.distance[:, 0])
-            return (kernel(emitted) * emitted.rate)[:, 0], *phase
+            phase = step * omega / sound_speed * emitted.distance[:, 0]
+            return (kernel(emitted) * emitted.rate)[:, 0], phase
 
-        # a loop, so that XLA does not fuse all this into the sums: see `harmonic_sums`
-        strength, cosine, sine = jax.lax.map(strength_and_phase, jnp.arange(tau.size))
-        sums = harmonic_sums(strength, cosine, sine, n_harmonics)
+        strength, phase = jax.lax.map(strength_and_phase, jnp.arange(tau.size))
+        sums = harmonic_sums(strength, phase, n_harmonics)
         return jnp.sum(sums * turned, axis=0) / (4 * np.pi * tau.size)
 
     return jax.lax.map(amplitudes_at, observers)
