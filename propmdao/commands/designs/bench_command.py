@@ -22,7 +22,7 @@ blades, rotation speed or thrust, flight speed and the place of the microphone. 
 tones and broadband noise of the bent blade stand beside those of the described one at the same
 operating point, and follow while a slider is dragged. Both can be heard, changes can be undone,
 and the blade is saved as a propeller file. The page is served to this machine alone, until Ctrl-C.
-Needs Starlette, Uvicorn and Plotly: pip install 'propmdao[bench]'.
+Needs Starlette, Uvicorn and websockets: pip install 'propmdao[bench]'.
 """
 EXAMPLES = """\
 examples:
@@ -37,7 +37,7 @@ _TIP_MACH = 0.2
 _DIAMETERS = 5.0  # from which it is heard where nothing else is asked for
 _ELEVATION = Range(-90.0, 90.0, "deg")
 _PORT = Range(0, 65535)
-_LIBRARIES = ("starlette", "uvicorn", "websockets", "plotly")
+_LIBRARIES = ("starlette", "uvicorn", "websockets")
 
 
 def add_bench(commands: argparse._SubParsersAction[Any]) -> None:
@@ -101,7 +101,9 @@ def _bench(options: argparse.Namespace) -> None:
     microphone = options.listen_at or (float(f"{2 * _DIAMETERS * radius:.2g}"), -45.0)
     request = Request.of(broadband=True, observers=point(*microphone), **asked).completed(propeller)
     if not all(map(importlib.util.find_spec, _LIBRARIES)):
-        raise ValueError("bench needs Starlette, Uvicorn and Plotly: pip install 'propmdao[bench]'")
+        raise ValueError(
+            "bench needs Starlette, Uvicorn and websockets: pip install 'propmdao[bench]'"
+        )
     from propmdao.commands.designs.bench.server import address, bound_socket, new_key, serve
     from propmdao.commands.designs.bench.workbench import Workbench
 

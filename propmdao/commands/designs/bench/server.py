@@ -13,7 +13,6 @@ from importlib.resources import files
 from typing import Any
 
 import uvicorn
-from plotly.offline import get_plotlyjs
 from starlette.applications import Starlette
 from starlette.concurrency import run_in_threadpool
 from starlette.middleware import Middleware
@@ -27,12 +26,17 @@ from propmdao.commands.designs.bench.workbench import Message, Workbench
 from propmdao.runtime.output_files import reason_of
 
 HOST = "127.0.0.1"
-# Nothing is loaded from anywhere else, and nobody else's script runs. Plotly styles what it draws.
+# Nothing is loaded from anywhere else, and nobody else's script runs.
 _POLICY = (
-    "default-src 'none'; script-src 'self'; style-src 'self' 'unsafe-inline'; img-src data: blob:;"
+    "default-src 'none'; script-src 'self'; style-src 'self'; img-src data:;"
     " connect-src 'self' {socket}; base-uri 'none'; form-action 'none'; frame-ancestors 'none'"
 )
 _KINDS = {".html": "text/html", ".js": "text/javascript", ".css": "text/css"}
+_OWN = ("propmdao.commands.designs.bench", "web")
+#: Files of the page, with the package and the folder that they are in; reports have one style, too.
+_FILES = dict.fromkeys(("bench.html", "bench.css", "bench.js", "drawing.js"), _OWN) | {
+    "page.css": ("propmdao.figures.pages", "templates")
+}
 _OTHER_WINDOW = 4000  # status of a connection that another one takes the place of
 _LONGEST_MESSAGE = 65536  # bytes
 
@@ -150,15 +154,10 @@ class _Pages:
     async def file(self, request: Request) -> Response:
         """A file of the page."""
         name = request.path_params.get("name", "bench.html")
-        if name == "plotly.js":
-            content = await run_in_threadpool(get_plotlyjs)
-        else:
-            folder = files("propmdao.figures.pages") / "templates"
-            if name != "page.css":
-                folder = files("propmdao.commands.designs.bench") / "web"
-            if name not in ("page.css", "bench.html", "bench.css", "bench.js"):
-                return self._refused("there is no such page", 404)
-            content = (folder / name).read_text(encoding="utf-8")
+        if name not in _FILES:
+            return self._refused("there is no such page", 404)
+        package, folder = _FILES[name]
+        content = (files(package) / folder / name).read_text(encoding="utf-8")
         kind = _KINDS[name[name.rindex(".") :]]
         return Response(content, headers=self._headers, media_type=kind)
 

@@ -9,7 +9,6 @@ import time
 
 import pytest
 
-pytest.importorskip("plotly")
 pytest.importorskip("starlette")
 pytest.importorskip("uvicorn")
 pytest.importorskip("websockets")
@@ -87,7 +86,7 @@ def test_it_listens_to_this_machine_alone_and_says_where():
 @pytest.mark.parametrize(
     ("name", "kind"),
     [("", "text/html"), ("bench.js", "text/javascript"), ("bench.css", "text/css"),
-     ("page.css", "text/css"), ("plotly.js", "text/javascript")],
+     ("page.css", "text/css"), ("drawing.js", "text/javascript")],
 )  # fmt: skip
 def test_files_of_the_page_load_nothing_from_elsewhere(served, name, kind):
     answer, content = get(served, "/{key}/" + name)

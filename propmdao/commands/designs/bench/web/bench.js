@@ -198,50 +198,43 @@
     }
   };
 
-  // ---- figures: the latest ones, when the browser has time
+  // ---- figures: the latest ones, drawn with the next picture of the screen
   const waiting = new Map();
-  let isDrawing = false;
-  const draw = async () => {
-    if (isDrawing || typeof Plotly === "undefined") return;
-    isDrawing = true;
-    while (waiting.size) {
-      const [place, { data, layout }] = waiting.entries().next().value;
-      waiting.delete(place);
-      try {
-        await Plotly.react(place, data, layout, { displayModeBar: false, responsive: true, scrollZoom: false });
-      } catch (error) {
-        place.textContent = "This figure needs WebGL, which the browser has not.";
-      }
-      await new Promise((resolve) => setTimeout(resolve));
-    }
-    isDrawing = false;
+  let drawn = 0;
+  const draw = () => {
+    drawn ||= requestAnimationFrame(() => {
+      drawn = 0;
+      for (const [canvas, panel] of waiting) drawing.diagram(canvas, panel);
+      waiting.clear();
+    });
   };
-  const touch = matchMedia("(pointer: coarse)").matches;
+  const kept = new Map(); // what each canvas shows
+  const resized = new ResizeObserver((entries) => {
+    for (const { target } of entries) if (kept.has(target)) waiting.set(target, kept.get(target));
+    draw();
+  });
   const put = (parent, panels) => {
     while (parent.children.length < panels.length) {
       const panel = make("div", parent, { className: "panel" });
       make("p", panel, { className: "label" });
-      make("div", panel, { className: "plot", role: "img" });
+      resized.observe(make("canvas", panel, { className: "plot", role: "img" }));
     }
-    panels.forEach(({ label, data, layout }, k) => {
-      const panel = parent.children[k], plot = panel.querySelector(".plot");
-      panel.querySelector(".label").textContent = label;
-      plot.setAttribute("aria-label", `${label}, of both blades`);
-      if (touch) layout.dragmode = false; // a finger that moves over a diagram moves the page
-      waiting.set(plot, { data, layout });
+    panels.forEach((panel, k) => {
+      const canvas = parent.children[k].querySelector("canvas");
+      parent.children[k].querySelector(".label").textContent = panel.label;
+      canvas.setAttribute("aria-label", `${panel.label}, of both blades`);
+      kept.set(canvas, panel);
+      waiting.set(canvas, panel);
     });
-  };
-  const blade = ({ panels: [space, ...shapes] }) => {
-    const place = document.querySelector("#blade .plot");
-    document.querySelector("#blade .label").textContent = space.label;
-    const fill = Math.min(Math.max(1, place.clientWidth / place.clientHeight), 2);
-    for (const axis of "xyz") space.layout.scene.aspectratio[axis] *= fill;
-    space.layout.uirevision = space.layout.scene.uirevision = "kept"; // as somebody has turned it
-    waiting.set(place, space);
-    put(find("shapes"), shapes);
     draw();
   };
-  window.addEventListener("load", draw);
+  const place = document.querySelector("#blade canvas"), inSpace = drawing.space(place);
+  const blade = ({ panels: [space, ...shapes] }) => {
+    document.querySelector("#blade .label").textContent = space.label;
+    inSpace(space);
+    place.dataset.drawn = space.label;
+    put(find("shapes"), shapes);
+  };
 
   // ---- sounds, repeated without a click; A and B as loud to each other as they are
   let context = null, playing = "", source = null, asked = 0;
@@ -311,7 +304,7 @@
     design: show,
     numbers: tell,
     blade,
-    spectra: ({ panels }) => { put(find("spectra"), panels); draw(); },
+    spectra: ({ panels }) => put(find("spectra"), panels),
     working: (message) => { if (message.number >= number) working(message.text); },
     trouble: (message) => {
       if (message.number < number) return;
