@@ -31,6 +31,7 @@ from propmdao.propeller.design_choices import (
     RESPONSES,
     THICKNESS,
     Response,
+    control_radii,
 )
 from propmdao.records.states import OperatingPoint
 
@@ -103,7 +104,7 @@ def design_problem(
     ranges = require_words(points, free, minimise, limits, n_control, n_observers)
     responses = {word: RESPONSES[word] for word in (minimise, *limits) if word in RESPONSES}
     noisy = any(response.is_noise for response in responses.values())
-    radii = np.linspace(propeller.r_over_R[0], 1.0, n_control)
+    radii = control_radii(propeller.r_over_R[0], n_control)
     group = PropellerGroup(
         propeller=propeller,
         num_nodes=None if len(points) == 1 else len(points),
@@ -259,12 +260,7 @@ def _add_variable(
     free = FREE[word]
     name, stations = free.distribution, propeller.r_over_R
     here = np.interp(radii, stations, np.asarray(described[name], float))
-    lower, upper = (np.full(radii.size, end) for end in range_)
-    if free.within is not None:
-        # The described blade stays within, even where it is outside of what the polars know.
-        lowest, highest = free.within
-        lower = np.minimum(np.maximum(lower, lowest - here), 0.0)
-        upper = np.maximum(np.minimum(upper, highest - here), 0.0)
+    lower, upper = free.ends(range_, here)
     if word == "sweep":
         lower[0] = upper[0] = 0.0  # at the root it would only turn the blade
     indices = np.flatnonzero(lower < upper)

@@ -16,6 +16,7 @@ from typing import Any, NoReturn
 
 import propmdao
 from propmdao.commands.analyze_command import add_analyze
+from propmdao.commands.designs.bench_command import add_bench
 from propmdao.commands.designs.compare_command import add_compare
 from propmdao.commands.designs.optimise_command import add_optimise
 from propmdao.commands.exchange.export_command import add_export
@@ -128,6 +129,7 @@ def build_parser() -> argparse.ArgumentParser:
     add_analyze(commands)
     add_compare(commands)
     add_optimise(commands)
+    add_bench(commands)
     add_sweep(commands)
     add_flyover(commands)
     add_export(commands)

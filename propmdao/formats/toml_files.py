@@ -77,7 +77,27 @@ def write_toml(path: str | os.PathLike[str], propeller: Propeller) -> int:
     OutputError
         If the file cannot be written.
     """
-    folder = Path(path).absolute().parent
+    with replacing(path) as file:
+        file.write_text(toml_text(propeller, Path(path).absolute().parent), encoding="utf-8")
+    return propeller.r_over_R.size
+
+
+def toml_text(propeller: Propeller, folder: Path | None = None) -> str:
+    """Text of a propeller file.
+
+    Parameters
+    ----------
+    propeller : Propeller
+        Propeller to write.
+    folder : Path, optional
+        Folder of the file, absolute; coordinate files in it or below are named relative to it, all
+        others, and by default all, by their whole path.
+
+    Returns
+    -------
+    str
+        Text from which `propeller_from_text` builds the same propeller.
+    """
     lines = [tomli_w.dumps({"name": propeller.name, "diameter": propeller.diameter}).rstrip()]
     lines.append(f"n_blades = {propeller.n_blades}")
     for key in DISTRIBUTIONS:
@@ -95,15 +115,14 @@ def write_toml(path: str | os.PathLike[str], propeller: Propeller) -> int:
     for position, name in propeller.airfoils:
         if name.endswith(COORDINATE_ENDINGS):
             absolute = Path(name).absolute()
-            inside = absolute.is_relative_to(folder)
-            name = str(absolute.relative_to(folder) if inside else absolute)
+            if folder is not None and absolute.is_relative_to(folder):
+                absolute = absolute.relative_to(folder)
+            name = str(absolute)
         entry = tomli_w.dumps({"airfoil": name}).rstrip()
         tables.append(f"{{ r_over_R = {position}, {entry} }}")
     lines.append(f"airfoils = [ {', '.join(tables)} ]")
     lines.append(tomli_w.dumps({"source": propeller.source}))
-    with replacing(path) as file:
-        file.write_text("\n".join(lines), encoding="utf-8")
-    return propeller.r_over_R.size
+    return "\n".join(lines)
 
 
 def propeller_from_text(text: str, label: str, folder: Path | None) -> Propeller:

@@ -8,7 +8,12 @@ from __future__ import annotations
 
 import dataclasses
 
+import numpy as np
+import numpy.typing as npt
+
 from propmdao.records.units import Range
+
+Floats = npt.NDArray[np.float64]
 
 
 @dataclasses.dataclass(frozen=True)
@@ -38,6 +43,47 @@ class Free:
     default: tuple[float, float]
     allowed: Range
     within: tuple[float, float] | None = None
+
+    def ends(self, range_: tuple[float, float], here: Floats) -> tuple[Floats, Floats]:
+        """Narrow a range of changes to what the distribution itself keeps.
+
+        Parameters
+        ----------
+        range_ : (float, float)
+            Lowest and highest change, with no change between them.
+        here : (n,) array
+            The described distribution at the control points.
+
+        Returns
+        -------
+        lower, upper : (n,) arrays
+            Lowest and highest change at the control points; no change is always between them, even
+            where the described blade is outside of what the polars know.
+        """
+        lower, upper = (np.full(here.size, end) for end in range_)
+        if self.within is not None:
+            lowest, highest = self.within
+            lower = np.minimum(np.maximum(lower, lowest - here), 0.0)
+            upper = np.maximum(np.minimum(upper, highest - here), 0.0)
+        return lower, upper
+
+
+def control_radii(root_r_over_R: float, n_control: int) -> Floats:
+    """Radii of the control points of free distributions, evenly from root to tip.
+
+    Parameters
+    ----------
+    root_r_over_R : float
+        First station of the blade, r/R.
+    n_control : int
+        Number of control points.
+
+    Returns
+    -------
+    (n_control,) array
+        r/R.
+    """
+    return np.linspace(root_r_over_R, 1.0, n_control)
 
 
 #: What may be free, by the word for it.

@@ -6,6 +6,7 @@ import dataclasses
 from functools import cached_property, partial
 from typing import NamedTuple
 
+import numpy as np
 from jax import Array
 
 from propmdao.aerodynamics.rotor_geometry import RotorGeometry
@@ -134,6 +135,29 @@ class ModelledBlade:
         radii = mesh_radii(changed.r_over_R, fidelity.n_spanwise, fidelity.n_surface_span)
         layers = section_layers(changed, model)
         return cls(propeller, model, changed, radii, polars, sources, layers)
+
+    def reshaped(self, propeller: Propeller) -> ModelledBlade:
+        """Make another blade of the same stations and airfoils ready, with the tables at hand.
+
+        Parameters
+        ----------
+        propeller : Propeller
+            Blade of another shape, or with another number of blades.
+
+        Returns
+        -------
+        ModelledBlade
+            The blade; polars and boundary layers are those of the same airfoils.
+
+        Raises
+        ------
+        ValueError
+            If the stations or the airfoils are others.
+        """
+        same = np.array_equal(propeller.r_over_R, self.changed.r_over_R)
+        if not same or propeller.airfoils != self.changed.airfoils:
+            raise ValueError("a reshaped blade has the stations and airfoils that it had")
+        return dataclasses.replace(self, propeller=propeller, changed=propeller)
 
     @cached_property
     def unloaded(self) -> HeldBlade:

@@ -30,6 +30,7 @@ EXTRAS = {
     "plots": ("matplotlib",),
     "polars": ("neuralfoil",),
     "report": ("jinja2", "plotly"),
+    "bench": ("starlette", "uvicorn", "websockets"),
     "parquet": ("pyarrow",),
     "doe": ("pydoe",),
     "parallel": ("distributed", "mpi4py"),

@@ -1,0 +1,1 @@
+"""The bench: a blade that is bent by sliders in the browser, and heard."""
