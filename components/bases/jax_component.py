@@ -25,6 +25,7 @@ from propmdao.components.bases.refusals import (
     require_numbers,
     require_real,
 )
+from propmdao.components.bases.variable_meanings import MEANINGS
 from propmdao.runtime.finite import Axis
 
 
@@ -51,6 +52,14 @@ class JaxComponent(om.ExplicitComponent):
     def __init__(self, **options: Any) -> None:
         super().__init__(**options)
         self._linearised = LastPoints(self._derivatives_to_keep, self.n_points)
+
+    def add_input(self, name: str, *values: Any, **metadata: Any) -> Any:
+        """Declare an input, as in OpenMDAO, with what its name means."""
+        return super().add_input(name, *values, **{"desc": MEANINGS.get(name, "")} | metadata)
+
+    def add_output(self, name: str, *values: Any, **metadata: Any) -> Any:
+        """Declare an output, as in OpenMDAO, with what its name means."""
+        return super().add_output(name, *values, **{"desc": MEANINGS.get(name, "")} | metadata)
 
     def compute(self, inputs: Any, outputs: Any) -> None:
         require_real(self)
