@@ -104,10 +104,10 @@ class AcousticsComp(NodesComp):
         surface = (fidelity.n_contour, fidelity.n_surface_span, 3)
         self.add_input("surface_nodes", shape=surface, units="m", tags=STATIC)
         self.add_point_input("load_position", shape=(n_loads, 3), units="m")
-        self.add_point_input("load_force", shape=force, units="N", desc="Force on the fluid.")
+        self.add_point_input("load_force", shape=force, units="N")
         add_noise_inputs(self)
         for quantity in LEVELS.values():
-            self.add_point_output(quantity.variable, shape=(n_observers,), desc=quantity.meaning)
+            self.add_point_output(quantity.variable, shape=(n_observers,))
         self.add_point_output(
             "mean_square_pressure", shape=(n_observers, fidelity.n_harmonics), units="Pa**2"
         )

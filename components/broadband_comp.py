@@ -163,14 +163,14 @@ class BroadbandComp(NodesComp):
         add_noise_inputs(self)
         if self.options["turbulent_inflow"]:
             add_point_inputs(self, TURBULENCE_INPUTS)
-        self.add_point_input("oaspl_db", _SILENCE_DB, shape=(n_observers,), desc="Of the tones.")
-        self.add_point_input("oaspl_dba", _SILENCE_DB, shape=(n_observers,), desc="Of the tones.")
+        self.add_point_input("oaspl_db", _SILENCE_DB, shape=(n_observers,))
+        self.add_point_input("oaspl_dba", _SILENCE_DB, shape=(n_observers,))
         self.add_point_output(
             "broadband_mean_square_pressure", shape=(n_observers, BANDS_HZ.size), units="Pa**2"
         )
         self.add_output("band_frequency", val=np.asarray(BANDS_HZ), units="Hz")
         for quantity in BROADBAND_LEVELS.values():
-            self.add_point_output(quantity.variable, shape=(n_observers,), desc=quantity.meaning)
+            self.add_point_output(quantity.variable, shape=(n_observers,))
         stations, trip = propeller.r_over_R, self.options["trip"]
         if layers is not None and trip is not None:
             raise ValueError(

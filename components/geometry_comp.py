@@ -149,15 +149,9 @@ class GeometryComp(JaxComponent):
         )
         # A solver around the propeller, Newton's say, starts from these without running this first.
         outputs = evaluate(self.function, self.static, self.constants, initial)
-        for name, units_of, desc in (
-            ("lattice_nodes", "m", "Corner points of the vortex lattice of blade 1."),
-            ("surface_nodes", "m", "Points of the section contours of blade 1."),
-            ("section_polars", None, "Polars of the sections in the middle of the strips."),
-            ("section_thickness_over_chord", None, "Maximum thickness over chord there."),
-            ("section_layers", None, "Boundary layers there, at the trailing edge."),
-        ):
-            if name in outputs:
-                self.add_output(name, val=np.asarray(outputs[name]), units=units_of, desc=desc)
+        units |= {"lattice_nodes": "m", "surface_nodes": "m"}
+        for name, value in outputs.items():
+            self.add_output(name, val=np.asarray(value), units=units.get(name))
 
     def check_inputs(self, inputs: Arrays) -> None:
         require_diameter(inputs)

@@ -84,19 +84,18 @@ class MotorComp(om.ExplicitComponent):
         motor = self.options["motor"]
         motor = motor if isinstance(motor, Motor) else load_motor(motor)
         n, battery = self.options["num_nodes"], self.options["battery"]
-        self.add_input("rpm", 1000.0, shape=n, units="rpm", desc="Rotation speed.")
-        self.add_input("torque", 0.0, shape=n, units="N*m", desc="Torque at the shaft.")
+        self.add_input("rpm", 1000.0, shape=n, units="rpm", desc="rotation speed")
+        self.add_input("torque", 0.0, shape=n, units="N*m", desc="torque at the shaft")
         values = {key: getattr(motor, key) for key in CONSTANTS}
         if battery:
             values |= {"battery_energy": 10.0, "usable_share": MOTOR["usable_share"].default}
         for name, value in values.items():
             quantity = MOTOR[name]
-            units, desc = quantity.unit or None, quantity.meaning.capitalize()
-            self.add_input(name, value, units=units, desc=f"{desc}.", tags="dymos.static_target")
+            units, desc = quantity.unit or None, quantity.meaning
+            self.add_input(name, value, units=units, desc=desc, tags="dymos.static_target")
         for name in (*_FOUND, "endurance") if battery else _FOUND:
             quantity = MOTOR_RESULTS[name]
-            units, desc = quantity.unit or None, quantity.meaning.capitalize()
-            self.add_output(name, shape=n, units=units, desc=f"{desc}.")
+            self.add_output(name, shape=n, units=quantity.unit or None, desc=quantity.meaning)
             rows = np.arange(n)
             for source in ("rpm", "torque", *CONSTANTS):
                 if name == "current" and source in _NOT_OF_CURRENT:

@@ -20,6 +20,7 @@ from propmdao.components.bases.refusals import (
     require_finite_products,
     require_real,
 )
+from propmdao.components.bases.variable_meanings import MEANINGS
 
 _components: WeakSet[JaxComponent] = WeakSet()
 
@@ -43,6 +44,14 @@ class JaxComponent(FunctionAtPoints):
         self._linearised = LastPoints(self._derivatives_to_keep, self.n_points)
         self._has_begun = False  # with its derivatives
         _components.add(self)
+
+    def add_input(self, name: str, *values: Any, **metadata: Any) -> Any:
+        """Declare an input, as in OpenMDAO, with what its name means."""
+        return super().add_input(name, *values, **{"desc": MEANINGS.get(name, "")} | metadata)
+
+    def add_output(self, name: str, *values: Any, **metadata: Any) -> Any:
+        """Declare an output, as in OpenMDAO, with what its name means."""
+        return super().add_output(name, *values, **{"desc": MEANINGS.get(name, "")} | metadata)
 
     def compute(self, inputs: Any, outputs: Any) -> None:
         require_real(self)

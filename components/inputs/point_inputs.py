@@ -32,9 +32,7 @@ def add_point_inputs(component: NodesComp, names: Iterable[str]) -> None:
     """
     for name in names:
         quantity = ASKED[name]
-        component.add_point_input(
-            quantity.variable, val=quantity.default, units=quantity.unit, desc=quantity.meaning
-        )
+        component.add_point_input(quantity.variable, val=quantity.default, units=quantity.unit)
 
 
 def check_point_inputs(inputs: Arrays) -> None:

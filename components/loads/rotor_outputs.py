@@ -43,8 +43,7 @@ def add_performance(component: NodesComp, hub: bool) -> None:
     results = [RESULTS[name] for name in PERFORMANCE]
     for quantity in (*results, *(HUB_LOADS.values() if hub else ())):
         shape = (len(quantity.axes),) if quantity.axes else ()
-        units, meaning = quantity.unit or None, quantity.meaning
-        component.add_point_output(quantity.variable, shape=shape, units=units, desc=meaning)
+        component.add_point_output(quantity.variable, shape=shape, units=quantity.unit or None)
 
 
 def add_loads(component: NodesComp, fidelity: Fidelity, kind: RotorKind) -> None:
@@ -73,10 +72,10 @@ def add_loads(component: NodesComp, fidelity: Fidelity, kind: RotorKind) -> None
     add = component.add_point_output
     add("circulation", shape=(*around, nc, ns), units="m**2/s")
     add("load_position", shape=(n, 3), units="m")
-    add("load_force", shape=(*around, n, 3), units="N", desc="Force on the fluid.")
-    add("section_speed", shape=(*around, ns), units="m/s", desc="Through the air.")
-    add("section_angle_of_attack", shape=(*around, ns), units="rad", desc="From the chord line.")
-    add("section_lift_coefficient", shape=(*around, ns), desc="In the middle of the strips.")
+    add("load_force", shape=(*around, n, 3), units="N")
+    add("section_speed", shape=(*around, ns), units="m/s")
+    add("section_angle_of_attack", shape=(*around, ns), units="rad")
+    add("section_lift_coefficient", shape=(*around, ns))
 
 
 def loads_outputs(loads: RotorLoads | TiltedLoads, state: RotorState, inputs: Arrays) -> Arrays:

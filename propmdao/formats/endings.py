@@ -77,6 +77,9 @@ PROPELLER_READERS = {
     ".qprop": _QPROP,
     ".prop": _QPROP,
     ".xrotor": FileFormat("rotor file of XROTOR", "propmdao.formats.exchange.xrotor:read_xrotor"),
+    ".bld": FileFormat(
+        "blade file of QBlade", "propmdao.formats.exchange.qblade.blade_file:read_bld"
+    ),
     ".csv": FileFormat(
         "table of a blade with heads", "propmdao.formats.blade_tables.csv_table:read_csv"
     ),
@@ -133,6 +136,10 @@ PROPELLER_WRITERS = {
     ".xrotor": PropellerWriter(
         "rotor file of XROTOR", "propmdao.formats.exchange.xrotor:write_xrotor"
     ),
+    ".bld": PropellerWriter(
+        "blade file of QBlade, and a folder of its polars and contours beside it",
+        "propmdao.formats.exchange.qblade.blade_file:write_bld",
+    ),
     ".vspscript": PropellerWriter(
         "script that builds the blade in OpenVSP with its own sections",
         "propmdao.formats.exchange.vspscript:write_vspscript",
@@ -144,6 +151,9 @@ PROPELLER_WRITERS = {
 #: that is not in the table, for XFOIL lets its users name polars as they like.
 POLAR_READERS = {
     ".c81": PolarReader("C81 file", "propmdao.formats.c81:read_c81"),
+    ".plr": PolarReader(
+        "polar file of QBlade", "propmdao.formats.exchange.qblade.polar_file:read_plr"
+    ),
     "": PolarReader(
         "polar of XFOIL or XFLR5, one for each Reynolds number",
         "propmdao.formats.polars:read_polars",

@@ -13,12 +13,13 @@ import numpy as np
 import openmdao.api as om
 
 import propmdao as pm
-from propmdao.components import PropellerGroup
+from propmdao.components import MotorComp, PropellerGroup
+from propmdao.propeller.motors import Motor
 
 MASS, WING_AREA, GRAVITY = 1.0, 0.25, 9.80665  # kg, m2, m/s2
 DRAG_AT_ZERO_LIFT, INDUCED_DRAG = 0.035, 0.05  # CD = CD0 + k CL^2
-KV, RESISTANCE, IDLE_CURRENT = 1000.0, 0.08, 0.8  # of motor and battery: rpm/V, ohm, A
-KT = 30.0 / (np.pi * KV)  # N m/A
+# The resistance is that of motor and battery.
+MOTOR = Motor("motor", speed_constant=1000.0, resistance=0.08, no_load_current=0.8)
 LARGEST_CURRENT, AVIONICS = 12.0, 4.0  # A; W
 HEIGHT = 60.0  # m, to climb
 PROPELLER, RADII = pm.load_propeller("apcsf_11x4.7"), [0.15, 0.5, 1.0]  # of the twist's points
@@ -34,7 +35,7 @@ class Flight(om.Group):
         self.options.declare("fidelity", FIDELITY, types=pm.Fidelity)
 
     def setup(self) -> None:
-        """Connect propeller and flight mechanics."""
+        """Connect propeller, motor and flight mechanics."""
         n = self.options["num_nodes"]
         propeller = PropellerGroup(
             propeller=PROPELLER,
@@ -44,6 +45,7 @@ class Flight(om.Group):
             control="values",
         )
         self.add_subsystem("propeller", propeller, promotes=["*"])
+        self.add_subsystem("motor", MotorComp(motor=MOTOR, num_nodes=n), promotes=["*"])
         pressure = f"(0.5 * density * speed**2 * {WING_AREA})"
         lift = f"({MASS * GRAVITY} * cos(climb_angle))"
         drag = f"({DRAG_AT_ZERO_LIFT} * {pressure} + {INDUCED_DRAG} * {lift}**2 / {pressure})"
@@ -51,9 +53,7 @@ class Flight(om.Group):
             [
                 f"acceleration = (thrust - {drag}) / {MASS} - {GRAVITY} * sin(climb_angle)",
                 "climb_rate = speed * sin(climb_angle)",
-                f"current = torque / {KT} + {IDLE_CURRENT}",
-                f"battery_power = (torque / {KT} + {IDLE_CURRENT}) * (rpm / {KV} + {RESISTANCE} "
-                f"* (torque / {KT} + {IDLE_CURRENT})) + {AVIONICS}",
+                f"battery_power = electrical_power + {AVIONICS}",
             ],
             shape=(n,),
             has_diag_partials=True,
@@ -61,9 +61,7 @@ class Flight(om.Group):
             density={"units": "kg/m**3"},
             speed={"units": "m/s"},
             climb_angle={"units": "rad"},
-            torque={"units": "N*m"},
-            rpm={"units": "rpm"},
-            current={"units": "A"},
+            electrical_power={"units": "W"},
             acceleration={"units": "m/s**2"},
             climb_rate={"units": "m/s"},
             battery_power={"units": "W"},

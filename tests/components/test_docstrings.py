@@ -103,5 +103,11 @@ def test_inputs_outputs_and_options_are_those_that_are_described(systems, name):
     inputs, outputs = (set().union(*names) for names in zip(*map(names_of, made), strict=True))
     assert described(component, "Inputs") == inputs
     assert described(component, "Outputs") == outputs
+    meanings = {
+        meta["prom_name"]: meta["desc"]
+        for system in made
+        for meta in system.get_io_metadata(metadata_keys=["desc"]).values()
+    }
+    assert [variable for variable, meaning in meanings.items() if not meaning] == []
     inherited = set(om.ExplicitComponent().options) | set(om.Group().options)
     assert described(component, "Options") == set(made[0].options) - inherited

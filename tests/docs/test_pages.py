@@ -68,6 +68,8 @@ def test_study_of_the_readme_starts(
         pytest.importorskip("dymos")
     if script.name == "openconcept_mission.py":
         pytest.importorskip("openconcept")
+    if script.name == "aviary_mission.py":
+        pytest.importorskip("aviary")
     monkeypatch.syspath_prepend(script.parent)
     monkeypatch.setattr("sys.argv", [str(script), "--help"])
     with pytest.raises(SystemExit) as end:

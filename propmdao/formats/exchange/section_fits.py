@@ -118,9 +118,11 @@ def section_fits(propeller: Propeller, r_over_R: npt.ArrayLike) -> list[SectionF
     speed = TIP_MACH * float(air.sound_speed) * radii
     re = speed * chord / float(air.kinematic_viscosity)
     polars = polars_for(propeller)
-    cl, cd, cm = curves_of_sections(propeller, polars, radii, re)[..., _NODES]
+    cl, cd, cm = curves_of_sections(propeller, polars, radii, re)[..., ATTACHED][..., _NODES]
     least, most = (
-        curves_of_sections(propeller, polars, radii, factor * re)[1, :, _NODES].min(axis=1)
+        curves_of_sections(propeller, polars, radii, factor * re)[1, :, ATTACHED][:, _NODES].min(
+            axis=1
+        )
         for factor in (0.5, 2.0)
     )
     exponent = np.log(most / least) / np.log(4.0)
@@ -146,7 +148,7 @@ def curves_of_sections(
     -------
     (3, n_sections, n_alpha) array
         Coefficients of lift, drag and moment about the quarter chord at the angles
-        ``ALPHA[ATTACHED]`` of `propmdao.aerodynamics.sections.polars.high_angle`.
+        `ALPHA` of `propmdao.aerodynamics.sections.polars.high_angle`.
 
     Raises
     ------
@@ -156,7 +158,7 @@ def curves_of_sections(
     span = span_interpolation(propeller.r_over_R, r_over_R)
     table = blade_tables(polars, Blade.from_propeller(propeller), span)
     curves = section_curves(table, jnp.asarray(reynolds, dtype=float)).values
-    cl, log_cd, cm = np.asarray(curves)[:, :, ATTACHED].swapaxes(0, 1)
+    cl, log_cd, cm = np.asarray(curves).swapaxes(0, 1)
     return np.stack([cl, np.exp(log_cd), cm])
 
 

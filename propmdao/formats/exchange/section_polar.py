@@ -50,7 +50,7 @@ def export_polar(path: str | Path, propeller: Propeller, r_over_R: float, reynol
     if not REYNOLDS.lowest <= reynolds <= REYNOLDS.highest:
         raise ValueError(f"reynolds must be {REYNOLDS}; got {reynolds:g}")
     polars = polars_for(propeller)
-    cl, cd, cm = curves_of_sections(propeller, polars, [r_over_R], [reynolds])[:, 0]
+    cl, cd, cm = curves_of_sections(propeller, polars, [r_over_R], [reynolds])[:, 0, ATTACHED]
     transition = Transition().completed(propeller.transition)
     lines = [
         "propmdao",

@@ -1,0 +1,1 @@
+"""Files of QBlade: blades, with the polars and contours of their sections."""
