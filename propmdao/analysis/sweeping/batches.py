@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from functools import partial
 from operator import itemgetter
 from typing import Any, NamedTuple
@@ -38,8 +38,11 @@ from propmdao.records.states import OperatingPoint, RotorState
 from propmdao.runtime.compilation import compiled
 from propmdao.runtime.side_by_side import at_all, is_accelerated, n_cores, side_by_side, stacked
 
-#: Points that are solved for in one compiled call; fewer are filled up.
-BATCH_SIZE = 64
+#: Points that are solved for in one compiled call; fewer are filled up. By the lattice on a
+#: processor a call takes two thirds of the time of its points, more of them do not fit the caches.
+BATCH_SIZE, LATTICE_BATCH_SIZE = 64, 4
+#: Points of a blade below which the lattice has a call for each, whose code is compiled already.
+FEWEST_OF_LATTICE = 3
 _SHORT_POINTS = 8  # in axial flight, that a core has in a row
 
 
@@ -52,9 +55,10 @@ def analyze_each(
 ) -> Iterator[Outcome[Analysis]]:
     """Analyse a propeller at several points, as `propmdao.analyze` does at one.
 
-    The blade of each change is made ready once. Blade elements of a blade are solved for at all
-    points in one call; by the lattice each core has a point of its own, and an accelerator all of
-    them. Marches in time go one after the other, for the wakes of each fill memory.
+    The blade of each change is made ready once, and its points are solved for in compiled calls of
+    several: `BATCH_SIZE` by blade elements and on an accelerator, `LATTICE_BATCH_SIZE` by the
+    lattice. Each core has a call of its own, and then the noise of a point of its own. Marches in
+    time go one after the other, for the wakes of each fill memory.
 
     Parameters
     ----------
@@ -81,9 +85,14 @@ def analyze_each(
                 places.setdefault((request.change, request.model), []).append(place)
         made = side_by_side(lambda key: outcome_of(_blade, propeller, *key, polars), places)
         blades = dict(zip(places, made, strict=True))
+        batches = [
+            batch
+            for key, of_one in places.items()
+            for batch in _batches(blades[key].result, {k: requests[k].result for k in of_one})
+        ]
         known: dict[int, Solved | Exception] = {}
-        for key, of_one in places.items():
-            known |= _known(blades[key].result, {k: requests[k].result for k in of_one})
+        for batch, solved in zip(batches, side_by_side(_Batch.solved, batches), strict=True):
+            known |= zip(batch.points, solved, strict=True)
 
     def finished(place: int) -> Outcome[Analysis]:
         request, of_request = requests[place]
@@ -114,34 +123,56 @@ def _n_at_once(requests: Sequence[Request]) -> int:
     return n_cores() * (_SHORT_POINTS if short else 1)
 
 
-def _known(
-    modelled: ModelledBlade | Exception, requests: Mapping[int, Any]
-) -> dict[int, Solved | Exception]:
-    """Loads that are solved for together, by the place of the point.
+class _Batch(NamedTuple):
+    """Points of a blade that are solved for in one call.
 
-    Those of blade elements: a point is too small to fill a core. Of the lattice on an accelerator
-    alone: on a processor a batch leaves the caches, and takes longer than its points.
+    Attributes
+    ----------
+    solver : module
+        Solver of the loads.
+    held : HeldBlade
+        The blade.
+    points : dict of int to OperatingPoint
+        Points by their places among all that are asked for.
+    size : int
+        Number of points that the code is compiled for.
+    """
+
+    solver: Solver
+    held: HeldBlade
+    points: dict[int, OperatingPoint]
+    size: int
+
+    def solved(self) -> list[Solved | Exception]:
+        """Loads at the points, or why a point has none."""
+        points = [*self.points.values()]
+        solve = _at_rpm if points[0].thrust is None else _at_thrust
+        return solve(self, points)
+
+
+def _batches(modelled: ModelledBlade | Exception, requests: Mapping[int, Any]) -> Iterator[_Batch]:
+    """Points of a blade that are solved for together; the others have a call each.
+
+    Those at an incidence are among the others: they take so long that nothing would be gained.
     """
     if isinstance(modelled, Exception):
-        return {}
+        return
     loads = modelled.model.loads
     if loads.elastic is not None or loads.unsteady is not None:
-        return {}
-    if not loads.blade_element and not is_accelerated():
-        return {}
-    solver = blade_element if loads.blade_element else axial
-    known: dict[int, Solved | Exception] = {}
-    for solve, has_thrust in ((_at_rpm, False), (_at_thrust, True)):
-        # Those at an incidence take so long each that nothing is gained.
-        points = {
-            place: request.point
+        return
+    solver: Solver = blade_element if loads.blade_element else axial
+    size, fewest = LATTICE_BATCH_SIZE, FEWEST_OF_LATTICE
+    if loads.blade_element or is_accelerated():
+        size, fewest = BATCH_SIZE, 1
+    for has_thrust in (False, True):
+        points = [
+            (place, request.point)
             for place, request in requests.items()
             if request.point.incidence_deg == 0.0
             and (request.point.thrust is not None) == has_thrust
-        }
-        solved = _in_batches(partial(solve, solver, modelled.unloaded), [*points.values()])
-        known |= zip(points, solved, strict=True)
-    return known
+        ]
+        for first in range(0, len(points), size) if len(points) >= fewest else ():
+            yield _Batch(solver, modelled.unloaded, dict(points[first : first + size]), size)
 
 
 def _blade(
@@ -171,24 +202,11 @@ def _analysis(
     return analysis_of(modelled, request, solved, progress)
 
 
-def _in_batches(
-    solve: Callable[[Sequence[OperatingPoint]], list[Solved | Exception]],
-    points: Sequence[OperatingPoint],
-) -> list[Solved | Exception]:
-    """Loads of a blade at several points, or why a point has none."""
-    results: list[Solved | Exception] = []
-    for first in range(0, len(points), BATCH_SIZE):
-        results += solve(points[first : first + BATCH_SIZE])
-    return results
-
-
-def _at_rpm(
-    solver: Solver, held: HeldBlade, points: Sequence[OperatingPoint]
-) -> list[Solved | Exception]:
-    radius = float(held.rotor.radius)
+def _at_rpm(batch: _Batch, points: Sequence[OperatingPoint]) -> list[Solved | Exception]:
+    held, radius = batch.held, float(batch.held.rotor.radius)
     states = [point.at(point.rotation_speed or 0.0) for point in points]
     case = held.case(points[0])
-    loads = _each(_solve_all(solver, case, stacked(states, BATCH_SIZE)), len(points))
+    loads = _each(_solve_all(batch.solver, case, stacked(states, batch.size)), len(points))
 
     def solved(point: OperatingPoint, state: RotorState, loads: RotorLoads) -> Solved:
         require_subsonic_tip(radius, state)
@@ -198,22 +216,20 @@ def _at_rpm(
     return [outcome_of(solved, *of_point).result for of_point in every]
 
 
-def _at_thrust(
-    solver: Solver, held: HeldBlade, points: Sequence[OperatingPoint]
-) -> list[Solved | Exception]:
-    radius = float(held.rotor.radius)
+def _at_thrust(batch: _Batch, points: Sequence[OperatingPoint]) -> list[Solved | Exception]:
+    held, radius = batch.held, float(batch.held.rotor.radius)
     bounds = [rotation_bounds(radius, float(point.speed)) for point in points]
     searches = [
         _Search(point.at(0.0), float(point.thrust or 0.0), within)
         for point, within in zip(points, bounds, strict=True)
     ]
     case = held.case(points[0])
-    every_trim = _trim_all(solver, case, stacked(searches, BATCH_SIZE))
+    every_trim = _trim_all(batch.solver, case, stacked(searches, batch.size))
 
     def solved(point: OperatingPoint, within: Bounds, trimmed: Trimmed) -> Solved:
         require_bounds(within, float(point.speed))
         case = held.case(point)
-        require_reached(trimmed, solver, case, point.thrust or 0.0, within)
+        require_reached(trimmed, batch.solver, case, point.thrust or 0.0, within)
         return held.solved(case, trimmed.loads, point.at(float(trimmed.rotation_speed)))
 
     every = zip(points, bounds, _each(every_trim, len(points)), strict=True)

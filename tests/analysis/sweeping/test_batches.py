@@ -92,30 +92,34 @@ def test_two_devices_have_the_points_of_one(on_devices: Any) -> None:
 @pytest.mark.parametrize(
     "drive", [{"rpm": (3000.0, 5000.0, 4e5)}, {"thrust": (1.0, 2.0, 500.0)}], ids=["rpm", "thrust"]
 )
-def test_the_lattice_on_an_accelerator_goes_in_one_call(
+def test_the_lattice_goes_in_calls_of_several_points(
     monkeypatch: pytest.MonkeyPatch, drive: dict[str, tuple[float, ...]]
 ) -> None:
     """With the numbers and the failures of points that are solved for alone."""
     ((name, values),) = drive.items()
     asked: list[Any] = [{name: value, "speed": 4.0, **SMALL} for value in values]
-    alone = list(analyze_each(PROPELLER, asked))
     calls = []
-    monkeypatch.setattr(batches, "is_accelerated", lambda: True)
-    monkeypatch.setattr(batches, "BATCH_SIZE", 4)
     for solve in ("_solve_all", "_trim_all"):
         function = getattr(batches, solve)
         monkeypatch.setattr(
             batches, solve, lambda *args, f=function: (calls.append(args[0]), f(*args))[1]
         )
+    alone = [next(analyze_each(PROPELLER, [one])) for one in asked]
+    assert not calls  # the code of one point is compiled already
     together = list(analyze_each(PROPELLER, asked))
     assert calls == [axial]
     for one, other in zip(together[:2], alone[:2], strict=True):
         np.testing.assert_allclose(numbers(one.result), numbers(other.result), rtol=1e-8)
     assert str(together[2].result) == str(alone[2].result) != ""
+    monkeypatch.setattr(batches, "is_accelerated", lambda: True)
+    monkeypatch.setattr(batches, "BATCH_SIZE", batches.LATTICE_BATCH_SIZE)
+    (on_accelerator,) = analyze_each(PROPELLER, asked[:1])
+    assert calls == [axial, axial]  # whatever their number
+    np.testing.assert_allclose(numbers(on_accelerator.result), numbers(alone[0].result), rtol=1e-8)
 
 
 def test_a_blade_is_made_ready_once(monkeypatch: pytest.MonkeyPatch) -> None:
-    """By the lattice, too, whose points are solved for one by one."""
+    """By the lattice, too."""
     made = []
     of = batches.ModelledBlade.of
 
