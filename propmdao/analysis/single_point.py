@@ -9,6 +9,7 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 from jax import Array
+from jax.typing import ArrayLike
 
 from propmdao.acoustics.broadband.self_noise import SelfNoise
 from propmdao.acoustics.kinematics.limits import require_outside_rotor, require_subsonic_tip
@@ -50,6 +51,7 @@ from propmdao.records.panels import Panels
 from propmdao.records.states import OperatingPoint, RotorState
 from propmdao.records.units import RAD_PER_S
 from propmdao.records.wake_law import WakeGrid
+from propmdao.runtime.compilation import compiled
 from propmdao.runtime.finite import require_finite
 
 
@@ -209,7 +211,7 @@ def analysis_of(
             turbulence=point.turbulent,
         )
         if is_steady:
-            noise = jax.tree.map(lambda bands: bands[rings.ring], noise)
+            noise = _of_rings(noise, rings.ring)
         noise = _noise_by_paths(noise, paths, state, listening.surroundings)
     diameter = modelled.changed.diameter
     analysis = Analysis(
@@ -286,9 +288,17 @@ def _tones(
         sound = tones(panels, loads.point_loads, n_blades, state, rings.position, n_harmonics)
         order = n_blades * np.arange(1, n_harmonics + 1)
         turned = np.exp(1j * rings.azimuth[:, None] * order)
-        return sound.each(lambda amplitude: amplitude[rings.ring] * turned)
+        return _of_rings(sound, rings.ring, turned)
     rotor = Rotor(equally_spaced(n_blades), float(state.rotation_speed), panels, loads.point_loads)
     return rotor_tones(rotor, state.velocity, state.air, points, n_harmonics)
+
+
+@compiled
+def _of_rings(sound: Any, ring: ArrayLike, turned: ArrayLike | None = None) -> Any:
+    """What is heard at each end, of what is heard on its circle, and turned for tones."""
+    if turned is None:
+        return jax.tree.map(lambda bands: bands[ring], sound)
+    return sound.each(lambda amplitude: amplitude[ring] * turned)
 
 
 def _noise_by_paths(
