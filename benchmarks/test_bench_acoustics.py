@@ -2,8 +2,8 @@
 
 Gathering 5,200 panels and 216 forces on 84 rings is a product of 84 polynomials and 20 parts of the
 harmonics, 60 of forces: 10 million multiplications and additions, 1 ms of one core at 10 a
-nanosecond. An observer hears 84 rings at 56 azimuths, 4,700 in all: 70 operations of the way, 45
-of cosine and sine, and 22 for each of 10 harmonics of four components, 1.6 million 0.2 ms
+nanosecond. An observer hears 84 rings at 56 azimuths, 4,700 in all: 70 operations for the way, 45
+for cosine and sine, and 22 for each of 10 harmonics of four components. That is 1.6 million, 0.2 ms
 at 8 a nanosecond. So the floor is 1.2 ms for one observer and 2.8 ms for nine.
 
 Measured on a busy machine, time of the processor: 5 and 7 ms, the reverse derivative 28 ms for

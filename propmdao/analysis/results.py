@@ -3,17 +3,24 @@
 from __future__ import annotations
 
 import dataclasses
-from typing import Any
+from typing import Any, NamedTuple
 
 import jax
+import jax.numpy as jnp
 import numpy as np
 import numpy.typing as npt
 from jax import Array
 
-from propmdao.acoustics.broadband.self_noise import SelfNoise, third_octave_centers
+from propmdao.acoustics.broadband.self_noise import SelfNoise
 from propmdao.acoustics.kinematics.observers import directions
-from propmdao.acoustics.levels.bands import third_octave, tones_in_bands
-from propmdao.acoustics.levels.decibels import level_db, mean_square, oaspl_db, spl_db
+from propmdao.acoustics.levels.bands import band_number, tones_in_bands
+from propmdao.acoustics.levels.decibels import (
+    SILENCE_DB,
+    level_db,
+    mean_square,
+    oaspl_db,
+    spl_db,
+)
 from propmdao.acoustics.levels.weighting import level_dba, oaspl_dba
 from propmdao.acoustics.signals import Tones
 from propmdao.aerodynamics.coefficients import Coefficients
@@ -106,7 +113,7 @@ class Analysis:
 
     def spl_bpf_db(self) -> npt.NDArray[np.float64]:
         """Level at the blade passage frequency at every observer [dB]."""
-        return np.asarray(_levels(self.tones)["spl_db"])[:, 0]
+        return np.asarray(_levels(self.tones, self.broadband).harmonics["spl_db"])[:, 0]
 
     def to_dict(self) -> dict[str, Any]:
         """Results as plain numbers, with the keys of ``propmdao analyze --json``.
@@ -126,8 +133,8 @@ class Analysis:
             the thrust, and its history: azimuth of blade 1, thrust and torque at each step. With
             broadband noise broadband_range, of `noise_range`.
         """
-        levels = jax.device_get(_levels(self.tones))
-        loads = jax.device_get(self.loads)
+        levels: _Levels = jax.device_get(_levels(self.tones, self.broadband))
+        third_octaves, loads = levels.third_octaves, jax.device_get(self.loads)
         places = directions(self.listening.observers).rounded()
         propeller = {key: getattr(self.propeller, key) for key in ("name", "diameter", "n_blades")}
         propeller |= {"checksum": checksum(self.propeller), "source": self.propeller.source}
@@ -159,7 +166,7 @@ class Analysis:
                     "elevation_deg": float(places.elevation_deg[i]),
                     "azimuth_deg": float(places.azimuth_deg[i]),
                     "radius": float(places.radius[i]),
-                    **self._heard(i, levels),
+                    **self._heard(i, levels, third_octaves),
                 }
                 for i in range(len(self.listening.observers))
             ],
@@ -208,71 +215,114 @@ class Analysis:
             },
         }
 
-    def _heard(self, i: int, levels: dict[str, np.ndarray]) -> dict[str, Any]:
+    def _heard(
+        self, i: int, levels: _Levels, third_octaves: tuple[np.ndarray, np.ndarray]
+    ) -> dict[str, Any]:
         """Levels at an observer."""
+        center, bands = third_octaves
         frequency = np.asarray(self.tones.frequency_hz)
-        spectra = [name for name in levels if name.startswith("spl")]
         result = {
-            "spl_bpf_db": float(levels["spl_db"][i, 0]),
-            **{name: float(levels[name][i]) for name in levels if name not in spectra},
+            "spl_bpf_db": float(levels.harmonics["spl_db"][i, 0]),
+            **{name: float(level[i]) for name, level in levels.overall.items()},
             "harmonics": [
                 {"m": m + 1, "frequency_hz": float(f)}
-                | {name: float(levels[name][i, m]) for name in spectra}
+                | {name: float(level[i, m]) for name, level in levels.harmonics.items()}
                 for m, f in enumerate(frequency)
             ],
         }
-        if self.broadband is None:
-            center, bands = third_octave(frequency, self.tones.total[i])
-        else:
-            noise = {name: np.asarray(getattr(self.broadband, name))[i] for name in MECHANISMS}
-            noise["spl"] = np.asarray(self.broadband.total)[i]
-            center, bands = _bands_with_noise(self.tones, i, noise["spl"])
-            result |= _levels_with_noise(self.tones, i, noise["spl"])
+        if levels.noise is not None:
+            result |= {name: float(level[i]) for name, level in levels.noise.overall.items()}
             result["broadband_dba"] = {
-                name: float(level_dba(BANDS_HZ, noise[name])) for name in MECHANISMS
+                name: float(levels.noise.overall_dba[name][i]) for name in MECHANISMS
             }
-            in_bands = {name: np.asarray(level_db(power)) for name, power in noise.items()}
+            spectra = {
+                f"{name}_db": levels.noise.bands[name][i].tolist() for name in (*MECHANISMS, "spl")
+            }
             result["broadband"] = [
-                {"frequency_hz": float(f)}
-                | {f"{name}_db": float(level[k]) for name, level in in_bands.items()}
-                for k, f in enumerate(BANDS_HZ)
+                {"frequency_hz": f} | {name: level[k] for name, level in spectra.items()}
+                for k, f in enumerate(BANDS_HZ.tolist())
             ]
         result["third_octave"] = [
             {"frequency_hz": float(f), "spl_db": float(level)}
-            for f, level in zip(center, bands, strict=True)
+            for f, level in zip(center, bands[i], strict=True)
         ]
         return result
 
 
-def _bands_with_noise(
-    tones: Tones, i: int, noise: npt.NDArray[np.float64]
-) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float64]]:
-    """Levels in all bands of tones or noise, and those between."""
-    frequency = np.asarray(tones.frequency_hz)
-    known = np.concatenate([BANDS_HZ, frequency[frequency > 0.0]])
-    center = third_octave_centers(known.min(), known.max())
-    power = np.array(tones_in_bands(frequency, mean_square(tones.total[i]), center))
-    first = int(np.argmin(np.abs(center - BANDS_HZ[0])))
-    power[first : first + BANDS_HZ.size] += noise
-    return center, np.asarray(level_db(power))
+class _NoiseLevels(NamedTuple):
+    """Levels where there is broadband noise: by observer, of bands by observer and band."""
+
+    overall: dict[str, Array]  # of the noise, and of tones and noise, by their key
+    overall_dba: dict[str, Array]  # of mechanisms
+    bands: dict[str, Array]  # of mechanisms, and of their sum as "spl"
+    bands_with_tones: Array
 
 
-def _levels_with_noise(tones: Tones, i: int, noise: npt.NDArray[np.float64]) -> dict[str, float]:
-    """Overall levels of the noise, and of tones and noise together."""
-    power = np.concatenate([np.asarray(mean_square(tones.total[i])), noise])
-    frequency = np.concatenate([np.asarray(tones.frequency_hz), BANDS_HZ])
-    return {
-        "oaspl_broadband_db": float(level_db(noise.sum())),
-        "oaspl_broadband_dba": float(level_dba(BANDS_HZ, noise)),
-        "oaspl_total_db": float(level_db(power.sum())),
-        "oaspl_total_dba": float(level_dba(frequency, power)),
-    }
+class _Levels(NamedTuple):
+    """Levels by their key: of all observers, and of all harmonics."""
+
+    overall: dict[str, Array]
+    harmonics: dict[str, Array]
+    band: Array  # number of the third octave that each harmonic is in
+    in_band: Array  # level there
+    noise: _NoiseLevels | None
+
+    @property
+    def third_octaves(self) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float64]]:
+        """Mid-band frequencies and levels of what the observers hear.
+
+        Of tones alone the bands that hold one; with noise all bands of tones or noise, and those
+        between.
+        """
+        turning = np.isfinite(self.band)  # at 0 Hz is no band
+        held, first = np.unique(np.asarray(self.band)[turning], return_index=True)
+        of_tones = np.asarray(self.in_band)[:, turning][:, first]
+        if self.noise is None:
+            return _middle_hz(held), of_tones
+        of_noise = np.round(10.0 * np.log10(BANDS_HZ / 1000.0))
+        both = np.concatenate([of_noise, held])
+        numbers = np.arange(both.min(), both.max() + 1.0)
+        level = np.full((len(of_tones), numbers.size), SILENCE_DB)
+        level[:, (held - numbers[0]).astype(int)] = of_tones
+        level[:, (of_noise - numbers[0]).astype(int)] = self.noise.bands_with_tones
+        return _middle_hz(numbers), level
+
+
+def _middle_hz(band: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
+    """Mid-band frequencies of third octaves by number."""
+    return np.asarray(1000.0 * 10.0 ** (band / 10.0))
 
 
 @compiled
-def _levels(tones: Tones) -> dict[str, Array]:
-    """Levels of the tones by their key: of all observers, and harmonics where it begins by spl."""
+def _levels(tones: Tones, noise: SelfNoise | None) -> _Levels:
+    """Levels of everything in one program: many small ones would take longer than the noise."""
     parts = {"": tones.total} | {f"{name}_": part for name, part in tones.parts.items()}
-    levels = {f"oaspl_{part}db": oaspl_db(pressure) for part, pressure in parts.items()}
-    levels |= {f"spl_{part}db": spl_db(pressure) for part, pressure in parts.items()}
-    return levels | {"oaspl_dba": oaspl_dba(tones.frequency_hz, tones.total)}
+    overall = {f"oaspl_{part}db": oaspl_db(pressure) for part, pressure in parts.items()}
+    harmonics = {f"spl_{part}db": spl_db(pressure) for part, pressure in parts.items()}
+    frequency, power = tones.frequency_hz, mean_square(tones.total)
+    number = band_number(frequency)
+    together = (number[:, None] == number).astype(float)
+    return _Levels(
+        overall | {"oaspl_dba": oaspl_dba(frequency, tones.total)},
+        harmonics,
+        number,
+        level_db(power @ together),
+        None if noise is None else _noise_levels(frequency, power, noise),
+    )
+
+
+def _noise_levels(frequency: Array, power: Array, noise: SelfNoise) -> _NoiseLevels:
+    """Levels of the noise, and of tones and noise together."""
+    mechanisms = {name: getattr(noise, name) for name in MECHANISMS}
+    every = jnp.concatenate([power, noise.total], axis=-1)
+    return _NoiseLevels(
+        {
+            "oaspl_broadband_db": level_db(noise.total.sum(axis=-1)),
+            "oaspl_broadband_dba": level_dba(BANDS_HZ, noise.total),
+            "oaspl_total_db": level_db(every.sum(axis=-1)),
+            "oaspl_total_dba": level_dba(jnp.concatenate([frequency, BANDS_HZ]), every),
+        },
+        {name: level_dba(BANDS_HZ, bands) for name, bands in mechanisms.items()},
+        {name: level_db(bands) for name, bands in (mechanisms | {"spl": noise.total}).items()},
+        level_db(noise.total + tones_in_bands(frequency, power, BANDS_HZ)),
+    )

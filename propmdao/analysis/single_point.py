@@ -215,7 +215,7 @@ def analysis_of(
             turbulence=point.turbulent,
         )
         if is_steady:
-            noise = jax.tree.map(lambda bands: bands[rings.ring], noise)
+            noise = jax.tree.map(lambda bands: np.asarray(bands)[rings.ring], noise)
         noise = _noise_by_paths(noise, paths, state, listening.surroundings)
     diameter = modelled.changed.diameter
     analysis = Analysis(

@@ -18,7 +18,9 @@ from numpy.typing import NDArray
 from propmdao.runtime.compilation import compiled
 
 REFERENCE_PRESSURE = 20e-6  # Pa, root mean square
-_SILENCE = 1e-20  # of the reference mean square: -200 dB
+#: Level of silence, so that levels are finite.
+SILENCE_DB = -200.0
+_SILENCE = 10 ** (SILENCE_DB / 10)  # of the reference mean square
 
 
 def spl_db(amplitude: ArrayLike) -> Array:
