@@ -18,8 +18,13 @@ from propmdao.records.pytrees import Scalar, record
 from propmdao.records.units import RAD_PER_S
 from propmdao.runtime.compilation import compiled
 
+# Of the product of the last two steps, relative to the rotation speed squared: the results at the
+# root lie on the straight line through the last two trials, to less than that.
 _TOLERANCE = 1.0e-10
+_ROUGH_TOLERANCE = 1.0e-4
+_ROUNDING = 1.0e-13
 _MAX_EVALUATIONS = 60
+_NEARBY = 1.02  # of the rotation speed: the second point of a straight line
 
 # Tip speeds between which a rotation speed is looked for where nobody bounds it [m/s]: that of the
 # rotation at least, a hundredth of the speed of sound, and that of the air at most, nine tenths.
@@ -38,6 +43,9 @@ class Solver(Protocol):
 
     def flow_at(self, case: RotorCase) -> Any:
         """Return what does not change with the rotation speed, a pytree of floats."""
+
+    def rough(self, flow: Any, thrust_required: Scalar, rotation_speed: Scalar) -> Array:
+        """Return about the thrust of a trial [N], at a small part of its cost."""
 
     def evaluate(
         self, flow: Any, thrust_required: Scalar, rotation_speed: Scalar
@@ -72,15 +80,15 @@ class Trimmed:
     ----------
     rotation_speed : scalar
         Rotation speed that gives the thrust, exactly differentiable [rad/s]; it means nothing
-        unless the thrust missing is positive at the lower and negative at the upper bound.
-    missing : (scalar, scalar)
-        Thrust required less the thrust at the lower and at the upper bound [N].
+        where the thrust was not reached.
+    reached : bool
+        Whether a rotation speed between the bounds gives the thrust.
     loads : RotorLoads or TiltedLoads
         Loads at that rotation speed.
     """
 
     rotation_speed: Array
-    missing: tuple[Array, Array]
+    reached: Array
     loads: RotorLoads | TiltedLoads
 
 
@@ -179,8 +187,7 @@ def require_reached(
     TrimError
         The thrust required lies outside what the bounds give; the message has both ends.
     """
-    at_low, at_high = trimmed.missing
-    if at_low >= 0.0 >= at_high and np.isfinite(trimmed.rotation_speed):
+    if trimmed.reached:
         return
     ends = [
         _thrust_in_words(solver, case, end)
@@ -233,9 +240,10 @@ def rotation_speed_by_interpolation(
 def solve_for_thrust(
     solver: Solver, case: RotorCase, thrust_required: Scalar, bounds: Bounds
 ) -> Trimmed:
-    """Rotation speed for a thrust, the thrust missing at either bound, and the loads.
+    """Rotation speed for a thrust, and the loads.
 
-    The last trial of the search is the solution, so nothing is solved twice.
+    The search begins where elements in uniform inflow have the thrust, and takes three or four
+    trials.
 
     Parameters
     ----------
@@ -263,94 +271,129 @@ def solve_for_thrust(
     def missing(params: Any, rotation_speed: Array, results: tuple[Array, Any]) -> Array:
         return params[1] - results[0]
 
-    def search(params: Any) -> tuple[Array, tuple[Array, Any], tuple[Array, Array]]:
-        _, required, bounds = params
+    def search(params: Any) -> tuple[Array, tuple[Array, Any], Array]:
+        flow, required, bounds = params
 
         def trial(rotation_speed: Array) -> tuple[Array, tuple[Array, Any]]:
             results = evaluate(params, rotation_speed)
-            return missing(params, rotation_speed, results), results
+            return results[0], results
 
-        return _bracketed_search(trial, required, bounds)
+        def rough(rotation_speed: Array) -> tuple[Array, tuple[()]]:
+            return solver.rough(flow, required, rotation_speed), ()
+
+        middle = jnp.sqrt(bounds.low * bounds.high)
+        begun = _search(rough, required, bounds, _Start(middle), _ROUGH_TOLERANCE)
+        end = _search(trial, required, bounds, _Start(begun.trial, begun.slope), _TOLERANCE)
+        return end.trial, end.results, end.reached.astype(float)
 
     params = flow, jnp.asarray(thrust_required, float), bounds
-    rotation_speed, (_, results), ends = at_root(search, evaluate, missing, params)
-    return Trimmed(rotation_speed, ends, solver.solution(flow, params[1], rotation_speed, results))
+    rotation_speed, (_, results), reached = at_root(search, evaluate, missing, params)
+    loads = solver.solution(flow, params[1], rotation_speed, results)
+    return Trimmed(rotation_speed, reached > 0.5, loads)
+
+
+class _Start(NamedTuple):
+    """Where a search begins, and how the thrust rises with the rotation speed there."""
+
+    rotation_speed: Array
+    slope: Array | None = None  # None: the thrust rises as the rotation speed squared
 
 
 class _Search(NamedTuple):
-    """State of the bracketed search."""
+    """State of a search."""
 
     n_trials: Array | int
     low: Array
     high: Array
+    ends_tried: tuple[Array, Array]
     trial: Array
     last_trial: Array
-    last_missing: Array
-    missing_at_low: Array
-    missing_at_high: Array
+    last_thrust: Array
+    slope: Array  # through the last two trials
     results: Any
-    close: Array  # whether the next trial will do
+    reached: Array
     done: Array
 
 
-def _bracketed_search(
-    missing: Callable[[Array], tuple[Array, Any]], thrust: Scalar, bounds: Bounds
-) -> tuple[Array, Any, tuple[Array, Array]]:
-    """Root of the missing thrust, the results there and the thrust missing at either bound.
+def _search(
+    thrust_at: Callable[[Array], tuple[Array, Any]],
+    required: Array,
+    bounds: Bounds,
+    start: _Start,
+    tolerance: float,
+) -> _Search:
+    """Rotation speed for a thrust, and the results on the straight line there.
 
-    Both bounds are evaluated first. The next trial then comes from CT, which is nearly a straight
-    line in J, drawn through the last two trials. Where that leaves the bracket, the bracket is
-    halved. Three to six trials are enough.
+    The next trial comes from CT, which is nearly a straight line in J, drawn through the last two
+    trials. Where that leaves the bracket, the bracket is halved. A bound is tried only where a
+    trial would lie beyond it; where the thrust lies beyond it, too, the search ends there.
     """
+    bottom, top = jnp.asarray(bounds.low), jnp.asarray(bounds.high)
 
     def unfinished(state: _Search) -> Array:
-        encloses = (state.missing_at_low >= 0.0) & (state.missing_at_high <= 0.0)
-        return (state.n_trials < _MAX_EVALUATIONS) & ((state.n_trials < 2) | encloses) & ~state.done
+        return (state.n_trials < _MAX_EVALUATIONS) & ~state.done
 
     def step(state: _Search) -> _Search:
-        x, last_x = state.trial, state.last_trial
-        f, results = missing(x)
-        low = jnp.where(f >= 0.0, x, state.low)
-        high = jnp.where(f < 0.0, x, state.high)
-        trial = _where_linear_ct_gives(thrust, x, thrust - f, last_x, thrust - state.last_missing)
-        inside = (trial > low) & (trial < high)
-        following = jnp.where(inside | (f == 0.0), trial, 0.5 * (low + high))
-        following = jnp.where(state.n_trials == 0, bounds.high, following)
-        # A secant step leaves an error of about the product of the last two. Where the next trial
-        # will do, it is evaluated once more, for the results there.
-        product = jnp.abs((following - x) * (x - last_x))
-        close = (state.n_trials > 1) & (product <= _TOLERANCE * following**2)
+        x, first = state.trial, state.n_trials == 0
+        thrust, results = thrust_at(x)
+        last = jnp.where(first, _NEARBY * x, state.last_trial)
+        if start.slope is None:
+            rise = (_NEARBY**2 - 1.0) * jnp.maximum(jnp.abs(thrust), jnp.abs(required))
+        else:
+            rise = (_NEARBY - 1.0) * x * start.slope
+        last_thrust = jnp.where(first, thrust + rise, state.last_thrust)
+        enough = ~(thrust <= required)
+        low, high = jnp.where(enough, state.low, x), jnp.where(enough, x, state.high)
+        ends_tried = state.ends_tried[0] | (x == bottom), state.ends_tried[1] | (x == top)
+        out_of_reach = (enough & (x == bottom)) | ((thrust < required) & (x == top))
+
+        wanted = _where_linear_ct_gives(required, x, thrust, last, last_thrust)
+        # At the root rounding may put the next trial to the wrong side.
+        inside = ((wanted > low) & (wanted < high)) | (jnp.abs(wanted - x) < _ROUNDING * x)
+        end = jnp.where(wanted < x, low, high)
+        untried = jnp.where(wanted < x, ~ends_tried[0], ~ends_tried[1])
+        is_bound = jnp.where(wanted < x, low == bottom, high == top) & jnp.isfinite(wanted)
+        otherwise = jnp.where(is_bound & untried, end, 0.5 * (low + high))
+        following = jnp.where(inside, wanted, otherwise)
+        # A secant step leaves an error of about the product of the last two.
+        product = jnp.abs((following - x) * (x - last))
+        close = inside & ~first & (product <= tolerance * following**2)
+        reached = close | (thrust == required)
+        following = jnp.where(thrust == required, x, following)
+        share = (following - x) / (x - last)
+        results = jax.tree.map(
+            lambda at, then: jnp.where(close, at + share * (at - then), at), results, state.results
+        )
         return _Search(
             n_trials=state.n_trials + 1,
             low=low,
             high=high,
-            trial=jnp.where(state.close, x, following),
+            ends_tried=ends_tried,
+            trial=following,
             last_trial=x,
-            last_missing=f,
-            missing_at_low=jnp.where(state.n_trials == 0, f, state.missing_at_low),
-            missing_at_high=jnp.where(state.n_trials == 1, f, state.missing_at_high),
+            last_thrust=thrust,
+            slope=(thrust - last_thrust) / (x - last),
             results=results,
-            close=close,
-            done=state.close,
+            reached=reached,
+            done=reached | out_of_reach,
         )
 
-    low, high = jnp.asarray(bounds.low), jnp.asarray(bounds.high)
-    zero, no = jnp.zeros_like(low), jnp.asarray(False)
-    start = _Search(
+    trial = jnp.clip(start.rotation_speed, bottom, top)
+    zero, no = jnp.zeros_like(trial), jnp.full_like(trial, False, bool)
+    begin = _Search(
         n_trials=0,
-        low=low,
-        high=high,
-        trial=low,
+        low=bottom,
+        high=top,
+        ends_tried=(no, no),
+        trial=trial,
         last_trial=zero,
-        last_missing=zero,
-        missing_at_low=zero,
-        missing_at_high=zero,
-        results=empty(missing, low)[1],
-        close=no,
+        last_thrust=zero,
+        slope=zero,
+        results=empty(thrust_at, trial)[1],
+        reached=no,
         done=no,
     )
-    end = jax.lax.while_loop(unfinished, step, start)
-    return end.trial, end.results, (end.missing_at_low, end.missing_at_high)
+    return jax.lax.while_loop(unfinished, step, begin)
 
 
 def _where_linear_ct_gives(thrust: Scalar, x1: Array, t1: Array, x2: Array, t2: Array) -> Array:

@@ -11,13 +11,72 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import cache, partial
-from typing import Any
+from typing import Any, NamedTuple
 
 import jax
 import jax.numpy as jnp
 from jax import Array
 
 import propmdao.runtime.jax_setup  # noqa: F401 - before any array is made
+
+
+class Factorised(NamedTuple):
+    """A matrix with its LU factors: what a matrix that meets several right-hand sides is kept as.
+
+    Attributes
+    ----------
+    matrix : array, shape (n, n)
+        Real or complex matrix, by which solutions are differentiated.
+    factors : array, shape (n, n)
+        L and U in one matrix.
+    order : integer array, shape (n,)
+        Order of the rows.
+    """
+
+    matrix: Array
+    factors: Array
+    order: Array
+
+    def solve(self, right: Array) -> Array:
+        """Solve the system of the matrix.
+
+        Parameters
+        ----------
+        right : array, shape (n,) or (n, k)
+            Right-hand sides.
+
+        Returns
+        -------
+        array, shape of right
+            Solution, with exact derivatives by matrix and right-hand sides.
+        """
+        columns = right.reshape(len(self.matrix), -1)
+        factors, order = jax.lax.stop_gradient((self.factors, self.order))
+        solution = jax.lax.custom_linear_solve(
+            lambda x: self.matrix @ x,
+            columns,
+            lambda _, b: _upper(factors, _lower(factors, b[order])),
+            lambda _, b: _lower_transposed(factors, _upper_transposed(factors, b))[
+                jnp.argsort(order)
+            ],
+        )
+        return solution.reshape(right.shape)
+
+
+def factorised(matrix: Array) -> Factorised:
+    """Factorise a matrix, with pivots.
+
+    Parameters
+    ----------
+    matrix : array, shape (n, n)
+        Real or complex matrix.
+
+    Returns
+    -------
+    Factorised
+        The matrix with its factors.
+    """
+    return Factorised(matrix, *_factorised(jax.lax.stop_gradient(matrix)))
 
 
 def solve(matrix: Array, right: Array) -> Array:
@@ -36,15 +95,7 @@ def solve(matrix: Array, right: Array) -> Array:
         Solution, with exact derivatives by both arguments.
     """
     kind = jnp.result_type(matrix, right)
-    matrix, columns = matrix.astype(kind), right.astype(kind).reshape(len(matrix), -1)
-    factors, order = _factorised(jax.lax.stop_gradient(matrix))
-    solution = jax.lax.custom_linear_solve(
-        lambda x: matrix @ x,
-        columns,
-        lambda _, b: _upper(factors, _lower(factors, b[order])),
-        lambda _, b: _lower_transposed(factors, _upper_transposed(factors, b))[jnp.argsort(order)],
-    )
-    return solution.reshape(right.shape)
+    return factorised(matrix.astype(kind)).solve(right.astype(kind))
 
 
 def inverse(matrices: Array) -> Array:

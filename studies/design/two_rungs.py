@@ -140,8 +140,7 @@ def _evaluated(described: Any, designs: jax.Array) -> tuple[jax.Array, ...]:
         sound = tones(
             meshes.panels, loads.point_loads, n_blades, state, MICROPHONE, SORTING.n_harmonics
         )
-        enclosed = (trimmed.missing[0] >= 0.0) & (trimmed.missing[1] <= 0.0)
-        good = enclosed & loads.converged
+        good = trimmed.reached & loads.converged
         rpm = trimmed.rotation_speed / RAD_PER_S
         numbers = rpm, loads.torque, oaspl_db(sound.total)[0]
         return tuple(jnp.where(good, number, jnp.nan) for number in numbers)

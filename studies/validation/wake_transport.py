@@ -21,12 +21,14 @@ from aerodynamic_validation import show, write_csv
 
 import propmdao as pm
 from propmdao.aerodynamics.coefficients import coefficients
-from propmdao.aerodynamics.lattice.rings import BOUND_CORE, blade_influence, wake_influence
+from propmdao.aerodynamics.lattice.rings import BOUND_CORE, blade_influence
+from propmdao.aerodynamics.lattice.steady_wake import WakeInfluence, wake_influence
 from propmdao.aerodynamics.rotor_geometry import RotorGeometry
 from propmdao.aerodynamics.solutions import axial
 from propmdao.aerodynamics.solutions.case import RotorCase
 from propmdao.aerodynamics.solutions.lattice_loads import (
     axial_onset,
+    blade_influence_of,
     lattice_geometry,
     loads_with_wake,
 )
@@ -69,6 +71,7 @@ def relaxed(propeller: pm.Propeller, speed: float, steps: int = STEPS) -> dict[s
     rotor, state = case.rotor, case.state
     n_blades, radius, omega = rotor.n_blades, rotor.radius, state.rotation_speed
     lattice = lattice_geometry(rotor)
+    blades = blade_influence_of(lattice, rotor)
     by_all_blades = jax.jit(partial(blade_influence, azimuths=rotor.azimuths))
     core, thick = (
         core_radius(middles(jnp.asarray(AGES)), state, initial * radius)
@@ -86,7 +89,8 @@ def relaxed(propeller: pm.Propeller, speed: float, steps: int = STEPS) -> dict[s
         downstream = outward[:, None] * drift[0] + (1.0 - outward)[:, None] * drift[1]
         sheets = helical.helices(trailing, ages, n_blades, downstream, drift[2])
         onset = axial_onset(lattice, state, induced)
-        loads = _loads(lattice, sheets, core, onset, AIR, None)
+        by_wake = WakeInfluence(_by_wake(lattice.points, sheets, core))
+        loads = _loads(lattice, blades, by_wake, onset, AIR, None)
         thrust, torque = n_blades * float(loads.thrust), n_blades * float(loads.torque)
         induced = float(momentum.momentum_induced_velocity(thrust, state, radius))
         middle = np.asarray(0.5 * (sheets[:, 0, 1:] + sheets[:, 0, :-1]))

@@ -3,7 +3,13 @@
 import jax.numpy as jnp
 import numpy as np
 
-from propmdao.aerodynamics.lattice.rings import Rings, blade_influence, wake_influence
+from propmdao.aerodynamics.lattice.rings import (
+    Rings,
+    blade_influence,
+    blade_normalwash,
+    segment_circulation,
+)
+from propmdao.aerodynamics.lattice.steady_wake import wake_influence
 from propmdao.aerodynamics.solutions.axial import flow_at, loads_at
 from propmdao.aerodynamics.vortices.cores import core_radius, middles
 from propmdao.aerodynamics.wakes.helical import helical_wake
@@ -66,4 +72,11 @@ def test_blades_summed_in_one_call_are_the_sum_of_their_own(slow_flyer):
         blade_influence(flow.lattice.points, rings, azimuth[None], core)
         for azimuth in rotor.azimuths
     ]
-    np.testing.assert_allclose(sum(each), flow.lattice.influence, rtol=1e-12, atol=1e-12)
+    normalwash = jnp.einsum("cijp,pc->ijp", sum(each)[..., :18], rings.normal)
+    together = blade_normalwash(rings, rotor.azimuths, core)
+    np.testing.assert_allclose(together, normalwash, rtol=1e-11, atol=1e-11)
+    circulation = jnp.asarray(np.random.default_rng(0).normal(size=(3, 6)))
+    velocity = jnp.tensordot(circulation, sum(each)[..., 18:], axes=((0, 1), (1, 2)))
+    of_segments = flow.blades.segments.velocities(segment_circulation(circulation))
+    # Summed one by one, what segments induce on themselves is the rounding of large numbers, 1e-9.
+    np.testing.assert_allclose(of_segments, velocity, atol=1e-7)

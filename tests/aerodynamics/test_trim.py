@@ -92,6 +92,7 @@ def test_any_solver_can_be_trimmed(slow_flyer):
     solver = types.SimpleNamespace(
         solve=lambda case: types.SimpleNamespace(thrust=thrust_of(case, case.state.rotation_speed)),
         flow_at=lambda case: case,
+        rough=lambda flow, required, omega: 0.8 * thrust_of(flow, omega),
         evaluate=lambda flow, required, omega: (thrust_of(flow, omega), {"twice": 2.0 * omega}),
         solution=lambda flow, required, omega, results: results["twice"],
     )
@@ -104,27 +105,59 @@ def test_any_solver_can_be_trimmed(slow_flyer):
         trim(solver, slow_flyer.case(speed=5.0), 50.0, Bounds(10.0, 900.0))
 
 
-def test_ends_without_a_solution_are_told_in_words(slow_flyer):
+def _without_solution_above(limit):
     def thrust_of(case, rotation_speed):
-        return np.where(rotation_speed > 500.0, np.nan, 2e-5 * rotation_speed**2)
+        return np.where(rotation_speed > limit, np.nan, 2e-5 * rotation_speed**2)
 
-    solver = _hashable(
+    return _hashable(
         types.SimpleNamespace(
             solve=lambda case: types.SimpleNamespace(
                 thrust=thrust_of(case, case.state.rotation_speed)
             ),
             flow_at=lambda case: case,
+            rough=lambda flow, required, omega: 3e-5 * omega**2,
             evaluate=lambda flow, required, omega: (
-                jnp.where(omega > 500.0, jnp.nan, 2e-5 * omega**2),
+                jnp.where(omega > limit, jnp.nan, 2e-5 * omega**2),
                 {},
             ),
             solution=lambda flow, required, omega, results: results,
         )
     )
+
+
+def test_ends_without_a_solution_are_told_in_words(slow_flyer):
     with pytest.raises(
         TrimError, match="out of reach at 5 m/s: 0.002 N at .* rpm, no solution at 8594.37 rpm"
     ):
-        trim(solver, slow_flyer.case(speed=5.0), 2.0, Bounds(10.0, 900.0))
+        trim(_without_solution_above(500.0), slow_flyer.case(speed=5.0), 20.0, Bounds(10.0, 900.0))
+
+
+@pytest.mark.parametrize("limit", [500.0, 317.0])
+def test_ends_without_a_solution_do_not_hide_one_between_them(slow_flyer, limit):
+    solver = _without_solution_above(limit)
+    omega, _ = trim(solver, slow_flyer.case(speed=5.0), 2.0, Bounds(10.0, 900.0))
+    assert omega == pytest.approx(np.sqrt(2.0 / 2e-5), rel=1e-10)
+
+
+@pytest.mark.parametrize("rough", [1.0, 0.3, 4.0, -1.0, 0.0])
+def test_a_rough_thrust_that_is_wrong_costs_trials_and_nothing_else(slow_flyer, rough):
+    solver = _hashable(
+        types.SimpleNamespace(
+            flow_at=lambda case: case,
+            rough=lambda flow, required, omega: rough * 2e-5 * omega**2,
+            evaluate=lambda flow, required, omega: (2e-5 * omega**2 - 4e-3 * omega, omega),
+            solution=lambda flow, required, omega, results: results,
+        )
+    )
+    case = slow_flyer.case(speed=5.0)
+    trimmed = solve_for_thrust(solver, case, 2.0, Bounds(10.0, 900.0))
+    exact = (4e-3 + np.sqrt(16e-6 + 16e-5)) / 4e-5
+    assert bool(trimmed.reached)
+    assert float(trimmed.rotation_speed) == pytest.approx(exact, rel=1e-10)
+    assert float(trimmed.loads) == pytest.approx(exact, rel=1e-10)
+    for unreachable in (50.0, -3.0):
+        missed = solve_for_thrust(solver, case, unreachable, Bounds(10.0, 900.0))
+        assert not bool(missed.reached)
 
 
 def _hashable(namespace):

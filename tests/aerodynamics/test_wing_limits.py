@@ -7,9 +7,11 @@ import jax.numpy as jnp
 import numpy as np
 import pytest
 
+from propmdao.aerodynamics.lattice.steady_wake import WakeInfluence, wake_influence
 from propmdao.aerodynamics.rotor_geometry import RotorGeometry
 from propmdao.aerodynamics.solutions.lattice_loads import (
     axial_onset,
+    blade_influence_of,
     lattice_geometry,
     loads_with_wake,
 )
@@ -38,13 +40,15 @@ def wing_nodes(span, chord, alpha, n_chordwise, n_spanwise, camber=lambda x: 0.0
 def wing_loads(nodes, span):
     """Circulation per strip, lift and drag, with a straight wake along the stream."""
     # The "radius" only scales the bound vortices' core; a unit is the chord of the long wing.
-    lattice = lattice_geometry(RotorGeometry(nodes, 1.0, 1))
+    wing = RotorGeometry(nodes, 1.0, 1)
+    lattice = lattice_geometry(wing)
     edge = lattice.rings.corner[-1]
     length = jnp.asarray([0.0, 0.1, 1.0, 10.0, 100.0]) * span
     wake = edge[:, None, None, :] - length[None, None, :, None] * jnp.array([0.0, 0.0, 1.0])
     air = Air(density=DENSITY)
     onset = axial_onset(lattice, RotorState(0.0, SPEED, air), 0.0)
-    loads = loads_with_wake(lattice, wake, jnp.full(4, 1e-6), onset, air, None)
+    by_wake = WakeInfluence(wake_influence(lattice.points, wake, jnp.full(4, 1e-6)))
+    loads = loads_with_wake(lattice, blade_influence_of(lattice, wing), by_wake, onset, air, None)
     force = loads.force.sum(axis=0)
     return loads, -force[1], -force[2]
 

@@ -7,6 +7,9 @@ theorem 8.2). So a few points of a strip stand for all of its collocation points
 Between the middles of the strips, for the chordwise segments, a cubic goes through the nearest
 four, and a straight line beyond the outer ones; strips are cosine spaced, so that both are in the
 angle of that cosine.
+
+Vortices still farther away need fewer points: every second of a strip, and those of every second
+strip. In the same way every second filament stands for all of a sheet that is so far away.
 """
 
 from __future__ import annotations
@@ -104,6 +107,53 @@ def at_segments(values: Array, n_chordwise: int) -> Array:
     return jnp.concatenate([bound.reshape(ends), chordwise.reshape(ends)], axis=-1)
 
 
+def coarse_points(lines: ChordLines, n_spanwise: int) -> Array:
+    """Every second of the points of every second strip.
+
+    Parameters
+    ----------
+    lines : ChordLines
+        Points of all strips.
+    n_spanwise : int
+        Number of strips, ns.
+
+    Returns
+    -------
+    (n, 3) array
+        The points [m].
+    """
+    points = lines.points.reshape(LINE_POINTS, n_spanwise, 3)
+    return points[::2, every_second(n_spanwise)].reshape(-1, 3)
+
+
+def from_coarse(values: Array, n_spanwise: int) -> Array:
+    """Read values at the points of all strips.
+
+    Parameters
+    ----------
+    values : (..., n) array
+        Values at the points of `coarse_points`.
+    n_spanwise : int
+        Number of strips, ns.
+
+    Returns
+    -------
+    (..., n * ns) array
+        Values at the points of `ChordLines`.
+    """
+    number, kept = np.arange(n_spanwise), every_second(n_spanwise)
+    place = np.cos(np.pi * (np.arange(LINE_POINTS) + 0.5) / LINE_POINTS)
+    coarse = values.reshape(*values.shape[:-1], -1, kept.size)
+    along, across = _polynomial(place[::2], place), through_nearest(kept, number)
+    fine = jnp.einsum("im,...ms,ts->...it", jnp.asarray(along), coarse, jnp.asarray(across))
+    return fine.reshape(*values.shape[:-1], -1)
+
+
+def every_second(n: int) -> np.ndarray:
+    """Every second of the numbers from 0 to n - 1, both ends included."""
+    return np.union1d(np.arange(0, n, 2), [n - 1])
+
+
 def _fractions(n_chordwise: int) -> np.ndarray:
     """Chebyshev points between the first quarter point and the last collocation point."""
     quarter, three_quarter = panel_fractions(n_chordwise)
@@ -119,12 +169,35 @@ def _reading(n_chordwise: int, fractions: np.ndarray) -> Array:
 
 def _to_edges(n_spanwise: int) -> np.ndarray:
     """Matrix from the middles of the strips to their edges, (ns + 1, ns)."""
-    matrix = np.zeros((n_spanwise + 1, n_spanwise))
-    for edge in range(n_spanwise + 1):
-        # Beyond the last strips a straight line: a cubic there would enlarge what is rough.
-        n = min(2 if edge in (0, n_spanwise) else 4, n_spanwise)
-        near = np.clip(edge - n // 2, 0, n_spanwise - n) + np.arange(n)
-        matrix[edge, near] = _polynomial(near + 0.5, np.array([edge]))[0]
+    middle, edge = np.arange(n_spanwise) + 0.5, np.arange(n_spanwise + 1)
+    matrix = through_nearest(middle, edge)
+    # Beyond the last strips a straight line: a cubic there would enlarge what is rough.
+    matrix[[0, -1]] = through_nearest(middle, edge[[0, -1]], 2)
+    return matrix
+
+
+def through_nearest(places: np.ndarray, wanted: np.ndarray, n_nearest: int = 4) -> np.ndarray:
+    """Matrix from values at places, rising, to those of polynomials through the nearest of them.
+
+    Parameters
+    ----------
+    places : (n_places,) array
+        Where values are given.
+    wanted : (n_wanted,) array
+        Where they are wanted.
+    n_nearest : int
+        Places that a polynomial goes through: four for a cubic.
+
+    Returns
+    -------
+    (n_wanted, n_places) array
+        The matrix.
+    """
+    n = min(n_nearest, places.size)
+    matrix = np.zeros((wanted.size, places.size))
+    first = np.clip(np.searchsorted(places, wanted) - n // 2, 0, places.size - n)
+    for i, near in enumerate(first[:, None] + np.arange(n)):
+        matrix[i, near] = _polynomial(places[near], wanted[i : i + 1])[0]
     return matrix
 
 

@@ -8,12 +8,13 @@ difference of two strips; in steady flow the last row trails into the wake uncha
 
 from __future__ import annotations
 
+import jax
 import jax.numpy as jnp
 import numpy as np
 from jax import Array
 from scipy.interpolate import CubicSpline
 
-from propmdao.aerodynamics.vortices.biot_savart import filament_velocities, segment_velocities
+from propmdao.aerodynamics.vortices.biot_savart import segment_normalwash, segment_velocities
 from propmdao.geometry.lattice import lattice_chord_fraction, strip_middle
 from propmdao.records.pytrees import Scalar, record
 
@@ -167,31 +168,41 @@ def blade_influence(points: Array, rings: Rings, azimuths: np.ndarray, core: Sca
     (3, nc, ns, n_points) array
         Velocity per unit circulation [1/m].
     """
-    nc, ns = rings.corner.shape[0] - 1, rings.corner.shape[1] - 1
     start, end = (turned(ends, azimuths) for ends in ring_segments(rings))
-    velocity = segment_velocities(points, start, end, core)
-    bound = velocity[:, : nc * ns].reshape(3, nc, ns, -1)
-    chordwise = velocity[:, nc * ns :].reshape(3, nc, ns + 1, -1)
-    ring = bound + chordwise[:, :, 1:] - chordwise[:, :, :-1]
-    return ring.at[:, :-1].add(-bound[:, 1:])
+    return _of_rings(segment_velocities(points, start, end, core), rings)
 
 
-def wake_influence(points: Array, wake_nodes: Array, wake_core_radius: Array) -> Array:
-    """Velocity at the points per unit circulation of each strip's last ring, by its wake.
+def blade_normalwash(rings: Rings, azimuths: np.ndarray, core: Scalar) -> Array:
+    """Normalwash at the collocation points per unit circulation of each ring, wake left out.
 
     Parameters
     ----------
-    points : (n_points, 3) array
-        Points at which the velocity is wanted [m].
-    wake_nodes : (ns + 1, n_blades, n_nodes, 3) array
-        Trailing filaments of the blades that are summed, because their circulation is the same [m].
-    wake_core_radius : (n_nodes - 1,) array
-        Core radius along the filaments [m].
+    rings : Rings
+        Lattice of blade 1.
+    azimuths : (n_blades,) array
+        Azimuths of the blades that are summed, from that of blade 1 [rad].
+    core : float
+        Core radius of the segments, positive [m].
 
     Returns
     -------
-    (3, ns, n_points) array
-        Velocity per unit circulation [1/m].
+    (nc, ns, nc * ns) array
+        Normal velocity per unit circulation [1/m].
     """
-    filament = filament_velocities(points, wake_nodes, wake_core_radius)
-    return filament[:, 1:] - filament[:, :-1]
+
+    def add(total: Array, ends: tuple[Array, Array]) -> tuple[Array, None]:
+        return total + segment_normalwash(rings.collocation, rings.normal, *ends, core), None
+
+    start, end = (turned(ends, azimuths) for ends in ring_segments(rings))
+    total = jnp.zeros((start.shape[1], len(rings.collocation)))
+    return _of_rings(jax.lax.scan(add, total, (start, end))[0], rings)
+
+
+def _of_rings(of_segments: Array, rings: Rings) -> Array:
+    """What a ring induces, (..., nc, ns, n_points), from what its segments do."""
+    nc, ns = rings.corner.shape[0] - 1, rings.corner.shape[1] - 1
+    rest, n_points = of_segments.shape[:-2], of_segments.shape[-1]
+    bound = of_segments[..., : nc * ns, :].reshape(*rest, nc, ns, n_points)
+    chordwise = of_segments[..., nc * ns :, :].reshape(*rest, nc, ns + 1, n_points)
+    ring = bound + chordwise[..., 1:, :] - chordwise[..., :-1, :]
+    return ring.at[..., :-1, :, :].add(-bound[..., 1:, :, :])

@@ -4,23 +4,29 @@ The wake is carried by the free stream and by the induced velocity w, w follows 
 momentum theory, and the thrust from the lattice in that wake: one scalar equation,
 w = momentum(thrust(w)), whatever the flight speed; hover is V = 0.
 
-`solve` is the solution at a rotation speed. `flow_at`, `evaluate` and `solution` are what a trim
-needs of it (`propmdao.aerodynamics.trim.Solver`).
+`solve` is the solution at a rotation speed. `flow_at`, `rough`, `evaluate` and `solution` are what
+a trim needs of it (`propmdao.aerodynamics.trim.Solver`).
 """
 
 from __future__ import annotations
 
 from functools import partial
+from typing import NamedTuple
 
 import jax.numpy as jnp
 from jax import Array
 
 from propmdao.aerodynamics.lattice.rings import BOUND_CORE
+from propmdao.aerodynamics.lattice.steady_wake import steady_wake
+from propmdao.aerodynamics.lattice.strips import Strips
 from propmdao.aerodynamics.solutions.case import RotorCase
+from propmdao.aerodynamics.solutions.elements import rough, rough_thrust
 from propmdao.aerodynamics.solutions.lattice_loads import (
+    BladeInfluence,
     LatticeGeometry,
     LatticeLoads,
     axial_onset,
+    blade_influence_of,
     lattice_geometry,
     loads_with_wake,
 )
@@ -42,8 +48,22 @@ from propmdao.records.loads import PointLoads
 from propmdao.records.pytrees import Scalar, record
 from propmdao.runtime.compilation import compiled
 
+__all__ = [
+    "AxialFlow",
+    "evaluate",
+    "flow_at",
+    "induced_velocity",
+    "loads_at",
+    "rotor_loads",
+    "rough",
+    "solution",
+    "solve",
+]
+
 _TOLERANCE = 1.0e-9  # relative, in the induced velocity
+_ROUGH_TOLERANCE = 1.0e-3
 _GUESS = 0.05  # of the tip speed
+_STEEPEST, _FLATTEST = -5.0, -1.0  # slopes that a guess may have
 
 
 @record
@@ -56,14 +76,22 @@ class AxialFlow:
         Case to solve; its rotation speed is not 0.
     lattice : LatticeGeometry
         Lattice of blade 1.
+    blades : BladeInfluence
+        What the rings of all blades induce on it.
     """
 
     case: RotorCase
     lattice: LatticeGeometry
+    blades: BladeInfluence
+
+    @property
+    def strips(self) -> Strips:
+        """Sections of blade 1."""
+        return self.lattice.strips
 
     def turning(self, rotation_speed: Scalar) -> AxialFlow:
         """The same flow at another rotation speed [rad/s]."""
-        return AxialFlow(self.case.turning(rotation_speed), self.lattice)
+        return AxialFlow(self.case.turning(rotation_speed), self.lattice, self.blades)
 
 
 _Params = tuple[AxialFlow, Array]  # with the thrust guessed
@@ -83,7 +111,8 @@ def flow_at(case: RotorCase) -> AxialFlow:
         The case with its lattice, all numbers as floats.
     """
     case = case.in_floats()
-    return AxialFlow(case, lattice_geometry(case.rotor))
+    lattice = lattice_geometry(case.rotor)
+    return AxialFlow(case, lattice, blade_influence_of(lattice, case.rotor))
 
 
 def induced_velocity(flow: AxialFlow, thrust: Scalar) -> Array:
@@ -121,10 +150,12 @@ def loads_at(flow: AxialFlow, induced_velocity: Scalar) -> LatticeLoads:
     """
     case, lattice = flow.case, flow.lattice
     rotor, state = case.rotor, case.state
-    wake = helical_wake(lattice.rings.corner[-1], case.wake, rotor, state, induced_velocity)
+    nodes = helical_wake(lattice.rings.corner[-1], case.wake, rotor, state, induced_velocity)
     core = core_radius(middles(jnp.asarray(case.wake.ages)), state, BOUND_CORE * rotor.radius)
+    rings = case.wake.n_near, case.wake.n_turn
+    wake = steady_wake(lattice.points, lattice.lines, nodes, core, rings)
     onset = axial_onset(lattice, state, induced_velocity)
-    return loads_with_wake(lattice, wake, core, onset, state.air, case.sections)
+    return loads_with_wake(lattice, flow.blades, wake, onset, state.air, case.sections)
 
 
 @compiled
@@ -157,26 +188,46 @@ def solve(case: RotorCase, thrust_guess: Scalar = 0.0) -> RotorLoads:
     def search(params: _Params) -> tuple[Array, LatticeLoads, None]:
         flow, thrust_guess = params
         state = flow.case.state
-        tip_speed = state.rotation_speed * flow.case.rotor.radius
-        known = induced_velocity(flow, thrust_guess)
+        low = lowest_induced_velocity(state, flow.case.rotor.radius)
+        high = state.rotation_speed * flow.case.rotor.radius
+        rough = _rough_root(flow, thrust_guess, low, high)
 
         def trial(w: Array, _: LatticeLoads) -> tuple[Array, LatticeLoads]:
             loads = evaluate(params, w)
             return residual(params, w, loads), loads
 
-        guess = jnp.where(thrust_guess == 0.0, _GUESS * tip_speed, known)
-        w, loads = decreasing_root(
-            trial,
-            lowest_induced_velocity(state, flow.case.rotor.radius),
-            tip_speed,
-            Guess(guess, empty(partial(evaluate, params), guess)),
-            _TOLERANCE,
-        )
+        guess = rough.holding(empty(partial(evaluate, params), rough.root))
+        w, loads = decreasing_root(trial, low, high, guess, _TOLERANCE, straight=True)
         return w, loads, None
 
     params = (flow, jnp.asarray(thrust_guess, float))
     w, loads, _ = at_root(search, evaluate, residual, params)
     return unless_still(turning, rotor_loads(flow, w, loads))
+
+
+class _RoughTrial(NamedTuple):
+    """Trial of the rough search."""
+
+    w: Array
+    missing: Array
+    slope: Array  # through this trial and the one before
+
+
+def _rough_root(
+    flow: AxialFlow, thrust_guess: Array, low: Scalar, high: Scalar
+) -> Guess[_RoughTrial]:
+    """Induced velocity of elements in uniform inflow, or of a thrust guessed, and the slope."""
+
+    def trial(w: Array, last: _RoughTrial) -> tuple[Array, _RoughTrial]:
+        missing = induced_velocity(flow, rough_thrust(flow.case, flow.strips, w)) - w
+        return missing, _RoughTrial(w, missing, (missing - last.missing) / (w - last.w))
+
+    tip_speed = flow.case.state.rotation_speed * flow.case.rotor.radius
+    zero = jnp.zeros_like(tip_speed)
+    guess = Guess(_GUESS * tip_speed, _RoughTrial(zero, zero, zero))
+    w, end = decreasing_root(trial, low, high, guess, _ROUGH_TOLERANCE, straight=True)
+    known = jnp.where(thrust_guess == 0.0, w, induced_velocity(flow, thrust_guess))
+    return Guess(known, end, jnp.clip(end.slope, _STEEPEST, _FLATTEST))
 
 
 def evaluate(

@@ -16,12 +16,11 @@ root (Prandtl 1919, as Glauert has it). Without W this is one equation for phi,
 continuous from windmilling to hover and finite everywhere, that of Ning (Wind Energy 17, 2014;
 Struct. Multidiscip. Optim. 63, 2021) times what it is singular with.
 
-`solve`, `flow_at`, `evaluate` and `solution` are those of `propmdao.aerodynamics.trim.Solver`.
+`solve`, `flow_at`, `rough`, `evaluate` and `solution` are those of
+`propmdao.aerodynamics.trim.Solver`.
 """
 
 from __future__ import annotations
-
-from typing import NamedTuple
 
 import jax
 import jax.numpy as jnp
@@ -32,6 +31,14 @@ from propmdao.aerodynamics.lattice.strips import Strips, blade_strips
 from propmdao.aerodynamics.sections.laws import SectionLaws, section_laws
 from propmdao.aerodynamics.sections.recambering import SectionStates
 from propmdao.aerodynamics.solutions.case import RotorCase
+from propmdao.aerodynamics.solutions.elements import (
+    LEAST_SINE,
+    Element,
+    against_rotation,
+    element_in,
+    prandtl_loss,
+    rough,
+)
 from propmdao.aerodynamics.solutions.result import RotorLoads, sections_agree, unless_still
 from propmdao.aerodynamics.solutions.roots import Guess, decreasing_root
 from propmdao.aerodynamics.wakes.momentum import (
@@ -42,11 +49,10 @@ from propmdao.records.loads import PointLoads
 from propmdao.records.pytrees import Scalar, record
 from propmdao.runtime.compilation import compiled
 
+__all__ = ["evaluate", "flow_at", "rough", "solution", "solve"]
+
 # Relative, in the inflow angle, before the last step: derivatives are taken there.
 _TOLERANCE = 1.0e-10
-# The swirl of an annulus that no air passes would be infinite: |sin phi| is kept above this,
-# smoothly. At an inflow angle of 3 deg it changes the momentum by 0.02 %.
-LEAST_SINE = 1.0e-3
 
 
 @record
@@ -198,33 +204,6 @@ def solution(
     return _rotor_loads(flow.turning(rotation_speed), phi)
 
 
-class Element(NamedTuple):
-    """Elements in air that meets them, which is a unit vector or a velocity.
-
-    Attributes
-    ----------
-    force : (ns, 3) array
-        Force over that of the dynamic pressure of 1 m/s on chord times width, [m^2/s^2] where the
-        air is a velocity.
-    c_n, c_t : (ns,) arrays
-        Part of the force along the thrust, and against the rotation.
-    alpha : (ns,) array
-        Angle of attack of the sections [rad].
-    share : (ns,) array
-        Size of the part of the air that is in the plane of the sections.
-    cl, cd : (ns,) arrays
-        Coefficients of lift and drag.
-    """
-
-    force: Array
-    c_n: Array
-    c_t: Array
-    alpha: Array
-    share: Array
-    cl: Array
-    cd: Array
-
-
 def _laws(flow: BladeElements) -> SectionLaws | None:
     """Polars of the elements; induced velocities change their Reynolds numbers by little."""
     case, strips = flow.case, flow.strips
@@ -243,44 +222,6 @@ def _element(flow: BladeElements, laws: SectionLaws | None, phi: Array) -> Eleme
     return element_in(flow.strips, laws, wind)
 
 
-def against_rotation(strips: Strips) -> Array:
-    """Directions against the rotation at the quarter points of the sections, (ns, 3)."""
-    x, y, _ = strips.quarter_chord.T
-    return jnp.stack([y, -x, jnp.zeros_like(x)], axis=1) / strips.radius[:, None]
-
-
-def element_in(strips: Strips, laws: SectionLaws | None, wind: Array) -> Element:
-    """Elements in air that meets them.
-
-    Parameters
-    ----------
-    strips : Strips
-        Elements of blade 1.
-    laws : SectionLaws or None
-        Polars of the elements; None for thin airfoils without drag.
-    wind : (ns, 3) array
-        Direction of the air, or its velocity.
-
-    Returns
-    -------
-    Element
-        Coefficients and angles.
-    """
-    backward, upward = ((wind * axis).sum(axis=1) for axis in (strips.backward, strips.upward))
-    alpha, share = jnp.arctan2(upward, backward), jnp.hypot(upward, backward)
-    if laws is None:
-        cl, cd = 2.0 * jnp.pi * (alpha - strips.zero_lift_angle), jnp.zeros_like(alpha)
-    else:
-        more, cd = laws.beyond_thin(alpha)
-        cl = laws.thin(alpha) + more
-    cosine, sine = jnp.cos(alpha)[:, None], jnp.sin(alpha)[:, None]
-    lift = cosine * strips.upward - sine * strips.backward
-    drag = cosine * strips.backward + sine * strips.upward
-    force = (share**2)[:, None] * (cl[:, None] * lift + cd[:, None] * drag)
-    c_t = (force * against_rotation(strips)).sum(axis=1)
-    return Element(force, force[:, 2], c_t, alpha, share, cl, cd)
-
-
 def solidity_of(flow: BladeElements) -> Array:
     """Share of the annuli that the blades take, (ns,)."""
     strips = flow.strips
@@ -295,11 +236,11 @@ def _sine(phi: Array) -> Array:
 
 def loss_at(flow: BladeElements, phi: Array) -> Array:
     """Prandtl's loss F at tip and root."""
-    r, sine, half = flow.strips.radius, _sine(phi), 0.5 * flow.case.rotor.n_blades
+    r, sine, n_blades = flow.strips.radius, _sine(phi), flow.case.rotor.n_blades
     # The quarter line of a swept tip may end a little beyond the tip radius.
-    ends = flow.inner[0], flow.outer[-1]
-    hub, tip = half * (r - ends[0]) / (ends[0] * sine), half * (ends[1] - r) / (r * sine)
-    return (2.0 / jnp.pi) ** 2 * jnp.arccos(jnp.exp(-tip)) * jnp.arccos(jnp.exp(-hub))
+    root, tip = flow.inner[0], flow.outer[-1]
+    at_root = prandtl_loss(n_blades, (r - root) / root, sine)
+    return at_root * prandtl_loss(n_blades, (tip - r) / r, sine)
 
 
 def _momentum(flow: BladeElements, element: Element, phi: Array) -> Array:

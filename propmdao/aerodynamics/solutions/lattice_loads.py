@@ -10,15 +10,17 @@ from __future__ import annotations
 import jax.numpy as jnp
 from jax import Array
 
+from propmdao.aerodynamics.lattice.chord_lines import ChordLines, chord_lines
 from propmdao.aerodynamics.lattice.rings import (
     BOUND_CORE,
     Rings,
-    blade_influence,
+    blade_normalwash,
     ring_segments,
     segment_circulation,
+    turned,
     vortex_rings,
-    wake_influence,
 )
+from propmdao.aerodynamics.lattice.steady_wake import WakeInfluence
 from propmdao.aerodynamics.lattice.strips import Strips, blade_strips
 from propmdao.aerodynamics.rotor_geometry import RotorGeometry
 from propmdao.aerodynamics.sections.laws import ViscousSections, section_laws
@@ -28,6 +30,7 @@ from propmdao.aerodynamics.sections.recambering import (
     section_states,
     solve_recambering,
 )
+from propmdao.aerodynamics.vortices.biot_savart import SegmentKernels, segment_kernels
 from propmdao.geometry.lattice import strip_middle
 from propmdao.records.air import Air
 from propmdao.records.pytrees import Scalar, record
@@ -49,16 +52,42 @@ class LatticeGeometry:
         Collocation points, then points of the bound and chordwise segments' forces [m].
     segment : (n_segments, 3) array
         Bound, then chordwise segments, in the direction of positive circulation [m].
-    influence : (3, nc, ns, n_panels + n_segments) array
-        Velocity at the points per unit circulation of the rings of all blades, without
-        wake [1/m].
+    lines : ChordLines
+        Points at which the flow of what is far away is computed.
     """
 
     rings: Rings
     strips: Strips
     points: Array
     segment: Array
-    influence: Array
+    lines: ChordLines
+
+    @property
+    def n_panels(self) -> int:
+        """Panels of the blade, nc * ns."""
+        return self.rings.normal.shape[0]
+
+
+@record
+class BladeInfluence:
+    """What the rings of all blades induce, without wake, and their part of the solution.
+
+    A new wake changes the last row of rings alone. With the rings' own downwash, factorised once,
+    that of the wake enters by a system of ns equations (Woodbury's identity).
+
+    Attributes
+    ----------
+    downwash : Factorised
+        Normalwash at the collocation points by the circulation of each ring [1/m].
+    recambered : (n_panels, ns) array
+        Circulation of the rings per unit of normalwash on all panels of a strip [m].
+    segments : SegmentKernels
+        Segments of all blades as those of blade 1 see them.
+    """
+
+    downwash: linear_algebra.Factorised
+    recambered: Array
+    segments: SegmentKernels
 
 
 @record
@@ -164,14 +193,42 @@ def lattice_geometry(rotor: RotorGeometry) -> LatticeGeometry:
     f = jnp.concatenate([jnp.tile(strip_middle(ns), nc), jnp.full(nc * (ns + 1), 0.5)])[:, None]
     points = jnp.concatenate([rings.collocation, (1.0 - f) * start + f * end])
     segment = end - start
-    influence = blade_influence(points, rings, rotor.azimuths, BOUND_CORE * radius)
-    return LatticeGeometry(rings, blade_strips(nodes, rings, radius), points, segment, influence)
+    return LatticeGeometry(
+        rings, blade_strips(nodes, rings, radius), points, segment, chord_lines(nodes)
+    )
+
+
+def blade_influence_of(lattice: LatticeGeometry, rotor: RotorGeometry) -> BladeInfluence:
+    """What the rings of all blades induce on blade 1.
+
+    Parameters
+    ----------
+    lattice : LatticeGeometry
+        Lattice of blade 1.
+    rotor : RotorGeometry
+        Blade and number of blades.
+
+    Returns
+    -------
+    BladeInfluence
+        The part of the Neumann condition and of the velocities that no wake changes.
+    """
+    core, rings = BOUND_CORE * rotor.radius, lattice.rings
+    downwash = blade_normalwash(rings, rotor.azimuths, core)
+    nc, ns = downwash.shape[:2]
+    factors = linear_algebra.factorised(downwash.reshape(nc * ns, -1).T)
+    start, end = (turned(ends, rotor.azimuths) for ends in ring_segments(rings))
+    return BladeInfluence(
+        factors,
+        -factors.solve(jnp.tile(jnp.eye(ns), (nc, 1))),
+        segment_kernels(lattice.points[lattice.n_panels :], start, end, core).without_own(),
+    )
 
 
 def loads_with_wake(
     lattice: LatticeGeometry,
-    wake_nodes: Array,
-    wake_core_radius: Array,
+    blades: BladeInfluence,
+    wake: WakeInfluence,
     onset: Onset,
     air: Air,
     sections: ViscousSections | None,
@@ -182,10 +239,10 @@ def loads_with_wake(
     ----------
     lattice : LatticeGeometry
         Lattice of blade 1.
-    wake_nodes : (ns + 1, n_blades, n_nodes, 3) array
-        Trailing filaments of all blades [m].
-    wake_core_radius : (n_nodes - 1,) array
-        Core radius along the filaments [m].
+    blades : BladeInfluence
+        What the rings of all blades induce on it.
+    wake : WakeInfluence
+        What the wake induces per unit circulation of the last rings.
     onset : Onset
         Air that meets the blade before its vortices act.
     air : Air
@@ -198,36 +255,34 @@ def loads_with_wake(
     LatticeLoads
         Loads of blade 1.
     """
-    nc, ns = lattice.influence.shape[1:3]
-    points, normal, strips = lattice.points, lattice.rings.normal, lattice.strips
-    n_panels = nc * ns
-    by_wake = wake_influence(points, wake_nodes, wake_core_radius)
-    influence = lattice.influence.at[:, -1].add(by_wake).reshape(3, n_panels, -1)
-
-    downwash = (influence[:, :, :n_panels] * normal.T[:, None, :]).sum(axis=0)
+    normal, strips, n_panels = lattice.rings.normal, lattice.strips, lattice.n_panels
+    ns = strips.chord.size
     normalwash = (onset.velocity[:, :n_panels] * normal.T).sum(axis=0)
-
+    by_wake = wake.normalwash(normal, lattice.lines)
+    given = blades.downwash.solve(jnp.column_stack([-normalwash, by_wake.T]))
     relative_speed = onset.relative_speed
-    recambered = jnp.tile(jnp.diag(relative_speed), (nc, 1))
-    unit = linear_algebra.solve(downwash.T, -jnp.column_stack([normalwash, recambered]))
-    circulation, response = unit[:, 0], unit[:, 1:]
-    # The last rings carry the circulation of their whole strip.
-    strip_flow = StripFlow(strips, relative_speed, circulation[-ns:], response[-ns:])
+    # Without the wake, by each unknown: none, and the recambering of each strip.
+    alone = jnp.column_stack([given[:, 0], blades.recambered * relative_speed])
+    carried = given[:, 1:]
+    # The last rings carry the circulation of their whole strip, and the wake's.
+    last = linear_algebra.solve(jnp.eye(ns) + carried[-ns:], alone[-ns:])
+    strip_flow = StripFlow(strips, relative_speed, last[:, 0], last[:, 1:])
     recambering, laws = jnp.zeros(ns), None
     if sections is not None:
         laws = section_laws(strips, relative_speed, onset.turning_share, air, sections)
         recambering = solve_recambering(strip_flow, laws)
-        circulation = circulation + response @ recambering
     states = section_states(strip_flow, recambering, laws)
+    known = jnp.concatenate([jnp.ones(1), recambering])
+    of_strips = last @ known
+    circulation = (alone @ known - carried @ of_strips).reshape(-1, ns)
 
-    induced = jnp.tensordot(circulation, influence[:, :, n_panels:], axes=(0, 1))
-    velocity = (onset.velocity[:, n_panels:] + induced).T
-    circulation = circulation.reshape(nc, ns)
     strength = segment_circulation(circulation)
+    induced = blades.segments.velocities(strength) + wake.velocities(of_strips, n_panels)
+    velocity = (onset.velocity[:, n_panels:] + induced).T
     lift = air.density * strength[:, None] * jnp.cross(velocity, lattice.segment)
     return LatticeLoads(
         circulation,
-        jnp.concatenate([points[n_panels:], strips.quarter_chord]),
+        jnp.concatenate([lattice.points[n_panels:], strips.quarter_chord]),
         jnp.concatenate([lift, profile_drag(strips, states, air.density)]),
         states,
     )

@@ -5,8 +5,8 @@ the circulation of all azimuths is one problem (`period.loads`), in a wake that 
 the induced velocity w carry (`wakes.skewed`); w follows from the mean thrust by Glauert's momentum
 theory of the tilted disk, as in axial flight. Without incidence this is the steady solution.
 
-`solve` is the solution at a rotation speed. `flow_at`, `evaluate` and `solution` are what a trim
-needs of it (`propmdao.aerodynamics.trim.Solver`).
+`solve` is the solution at a rotation speed. `flow_at`, `rough`, `evaluate` and `solution` are what
+a trim needs of it (`propmdao.aerodynamics.trim.Solver`).
 """
 
 from __future__ import annotations
@@ -19,6 +19,7 @@ from jax import Array
 
 from propmdao.aerodynamics.lattice.rings import spun
 from propmdao.aerodynamics.solutions.case import RotorCase
+from propmdao.aerodynamics.solutions.elements import rough
 from propmdao.aerodynamics.solutions.period.flow import (
     TiltedFlow,
     flow_at,
@@ -40,6 +41,19 @@ from propmdao.aerodynamics.wakes.momentum import within_momentum_theory
 from propmdao.records.loads import PeriodicLoads
 from propmdao.records.pytrees import Scalar
 from propmdao.runtime.compilation import compiled
+
+__all__ = [
+    "TiltedFlow",
+    "evaluate",
+    "flow_at",
+    "induced_velocity",
+    "loads_at",
+    "mean_thrust",
+    "rough",
+    "solution",
+    "solve",
+    "tilted_loads",
+]
 
 _TOLERANCE = 1.0e-7  # relative, in the induced velocity: 1e-8 of the loads, by a straight line
 

@@ -16,6 +16,8 @@ same formula on (n, 3) arrays costs several times as much.
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import jax
 import jax.numpy as jnp
 from jax import Array
@@ -146,18 +148,90 @@ def segment_velocities(points: Array, start: Array, end: Array, core_radius: Sca
     return jax.lax.scan(add, total, (start, end))[0]
 
 
-def filament_velocities(points: Array, nodes: Array, core_radius: Array) -> Array:
-    """Compute the velocity of each filament, a chain of unit circulation, at each point.
+class SegmentKernels(NamedTuple):
+    """Segments seen from fixed points, kept so that any circulation of them gives the velocity.
+
+    Three components of the velocity of each segment would take three times the memory, and writing
+    them three times as long.
+
+    Attributes
+    ----------
+    points : (3, n_points) array
+        Points at which the velocity is wanted [m].
+    kernel : (n_chains, n_segments, n_points) array
+        K such that a segment of unit circulation induces K (a x b) [1/m^3].
+    moments : (n_chains, 6, n_segments) array
+        A - B and A x B [m, m^2].
+    """
+
+    points: Array
+    kernel: Array
+    moments: Array
+
+    def velocities(self, circulation: Array) -> Array:
+        """Velocity at the points.
+
+        Parameters
+        ----------
+        circulation : (n_segments,) array
+            Circulation of the segments, the same in all chains [m^2/s].
+
+        Returns
+        -------
+        (3, n_points) array
+            Velocity [m/s].
+        """
+        moments = jnp.einsum("bcs,bsp->cp", circulation * self.moments, self.kernel)
+        return _velocity(self.points, moments)
+
+    def without_own(self) -> SegmentKernels:
+        """The same where each point lies on the segment of its number in the first chain.
+
+        It induces nothing there, but in this form only as the difference of two large numbers.
+        """
+        own = jnp.arange(self.kernel.shape[1])
+        return self._replace(kernel=self.kernel.at[0, own, own].set(0.0))
+
+
+def segment_kernels(points: Array, start: Array, end: Array, core_radius: Scalar) -> SegmentKernels:
+    """Compute what is needed of segments for the velocity at each point.
 
     Parameters
     ----------
     points : (n_points, 3) array
         Points at which the velocity is wanted [m].
-    nodes : (n_filaments, n_chains, n_nodes, 3) array
-        Nodes of the chains [m]. Velocities are added over the chains, for example over the
-        blades, of which each has the same filament; circulation is positive along the chain.
-    core_radius : (n_nodes - 1,) array
-        Core radius of the segments along a chain, positive [m].
+    start, end : (n_chains, n_segments, 3) array
+        Ends of the segments [m]; velocities are added over the chains.
+    core_radius : float
+        Vortex core radius, positive [m].
+
+    Returns
+    -------
+    SegmentKernels
+        The segments as the points see them.
+    """
+    p = points.T
+
+    def chain(ends: tuple[Array, Array]) -> tuple[Array, Array]:
+        a, b = (x.T for x in ends)
+        return _kernel(p, a, b, _core4(a, b, core_radius)), _moments(a, b)
+
+    return SegmentKernels(p, *jax.lax.map(chain, (start, end)))
+
+
+def filament_velocities(points: Array, start: Array, end: Array, core_radius: Array) -> Array:
+    """Compute the velocity of each filament, segments of unit circulation, at each point.
+
+    Parameters
+    ----------
+    points : (n_points, 3) array
+        Points at which the velocity is wanted [m].
+    start, end : (n_filaments, n_segments, 3) arrays
+        Ends of the segments whose velocities are added to that of a filament, for example those of
+        all blades, of which each has the same filament [m]; circulation is positive from start to
+        end.
+    core_radius : (n_segments,) array
+        Core radius of the segments of a filament, positive [m].
 
     Returns
     -------
@@ -165,20 +239,19 @@ def filament_velocities(points: Array, nodes: Array, core_radius: Array) -> Arra
         Velocity per unit circulation [1/m].
     """
     p = points.T
-    core = jnp.tile(core_radius, nodes.shape[1])
 
     # One filament at a time: the block of segments x points stays in cache, and the sum over
     # segments is a matrix product. The checkpoint keeps reverse mode from storing every block.
     @jax.checkpoint
-    def filament(chains: Array) -> Array:
-        a, b = chains[:, :-1].reshape(-1, 3).T, chains[:, 1:].reshape(-1, 3).T
-        return _moments(a, b) @ _kernel(p, a, b, _core4(a, b, core))
+    def filament(ends: tuple[Array, Array]) -> Array:
+        a, b = (x.T for x in ends)
+        return _moments(a, b) @ _kernel(p, a, b, _core4(a, b, core_radius))
 
-    return _velocity(p, jnp.moveaxis(jax.lax.map(filament, nodes), 1, 0))
+    return _velocity(p, jnp.moveaxis(jax.lax.map(filament, (start, end)), 1, 0))
 
 
 def segment_normalwash(
-    points: Array, normals: Array, start: Array, end: Array, core_radius: Array
+    points: Array, normals: Array, start: Array, end: Array, core_radius: Scalar
 ) -> Array:
     """Compute the velocity of each segment of unit circulation along the normal at each point.
 
@@ -188,7 +261,7 @@ def segment_normalwash(
         Points [m], and unit vectors along which the velocity is wanted.
     start, end : (n_segments, 3) arrays
         Ends of the segments [m]; circulation is positive from start to end.
-    core_radius : (n_segments,) array
+    core_radius : float or (n_segments,) array
         Vortex core radius, positive [m].
 
     Returns

@@ -47,11 +47,14 @@ class WakeTransport:
         Azimuths behind the blade, from 0 [rad]; `wakes.ages.wake_azimuths` spaces them.
     n_near : int
         Rings behind a blade that are near to it: those younger than an eighth of a turn.
+    n_turn : int
+        Rings behind a blade that are younger than a turn.
     """
 
     law: WakeLaw
     ages: Array | np.ndarray
     n_near: int = static(1)
+    n_turn: int = static(1)
 
 
 def wake_transport(law: WakeLaw = WakeLaw(), grid: WakeGrid = WakeGrid()) -> WakeTransport:  # noqa: B008 - frozen
@@ -70,8 +73,11 @@ def wake_transport(law: WakeLaw = WakeLaw(), grid: WakeGrid = WakeGrid()) -> Wak
         Law and ages, as the solutions take them.
     """
     ages = wake_azimuths(grid)
-    n_near = int(np.searchsorted(ages[1:-1], np.radians(_NEAR_DEG)))
-    return WakeTransport(law, ages, max(n_near, 1))
+    n_near, n_turn = (
+        max(int(np.searchsorted(ages[1:-1], np.radians(age_deg))), 1)
+        for age_deg in (_NEAR_DEG, 360.0)
+    )
+    return WakeTransport(law, ages, n_near, n_turn)
 
 
 def helical_wake(

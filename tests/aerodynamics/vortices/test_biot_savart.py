@@ -59,7 +59,8 @@ def test_filament_is_the_sum_of_its_segments():
         ],
         axis=1,
     )
-    filaments = filament_velocities(points, nodes, jnp.full(5, 0.1))
+    start, end = (x.reshape(3, -1, 3) for x in (nodes[:, :, :-1], nodes[:, :, 1:]))
+    filaments = filament_velocities(points, start, end, jnp.full(10, 0.1))
     np.testing.assert_allclose(filaments, by_segment, rtol=1e-10)
 
 

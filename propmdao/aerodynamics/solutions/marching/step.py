@@ -159,7 +159,7 @@ def step_loads(
     still = jnp.zeros((n_blades, ns))
     older = None
     if (n := parts.n_close) is not None:
-        lines = period.lines.points
+        lines = period.lattice.lines.points
         older = jax.lax.map(
             lambda place: older_velocities(lines, place[0], n, parts, place[1]),
             (sheets, seen_known),

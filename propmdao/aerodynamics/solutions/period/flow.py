@@ -7,6 +7,7 @@ from jax import Array
 
 from propmdao.aerodynamics.lattice.chord_lines import LINE_POINTS
 from propmdao.aerodynamics.lattice.rings import BOUND_CORE
+from propmdao.aerodynamics.lattice.strips import Strips
 from propmdao.aerodynamics.solutions.case import RotorCase
 from propmdao.aerodynamics.solutions.period.lattice import (
     PeriodLattice,
@@ -37,6 +38,11 @@ class TiltedFlow:
 
     case: RotorCase
     lattice: PeriodLattice
+
+    @property
+    def strips(self) -> Strips:
+        """Sections of blade 1."""
+        return self.lattice.lattice.strips
 
     def turning(self, rotation_speed: Scalar) -> TiltedFlow:
         """The same flow at another rotation speed [rad/s]."""
@@ -121,6 +127,7 @@ def loads_at(
         ages=ages,
         delay=delay,
         n_near=case.wake.n_near if lattice.n_chordwise > LINE_POINTS else None,
+        n_turn=case.wake.n_turn,
     )
     return period_loads(lattice, wake, onset, state.rotation_speed, state.air, case.sections, start)
 

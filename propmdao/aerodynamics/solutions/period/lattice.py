@@ -10,7 +10,6 @@ import jax.numpy as jnp
 import numpy as np
 from jax import Array
 
-from propmdao.aerodynamics.lattice.chord_lines import ChordLines, chord_lines
 from propmdao.aerodynamics.lattice.rings import BOUND_CORE, blade_influence
 from propmdao.aerodynamics.rotor_geometry import RotorGeometry
 from propmdao.aerodynamics.solutions.lattice_loads import LatticeGeometry, lattice_geometry
@@ -34,8 +33,6 @@ class PeriodLattice:
         middle of their corners [m].
     last_panel : (ns,) array
         Chordwise length of the last panels [m].
-    lines : ChordLines
-        Points at which the flow of what is far away is computed.
     """
 
     lattice: LatticeGeometry
@@ -43,7 +40,6 @@ class PeriodLattice:
     ring_area: Array
     ring_middle: Array
     last_panel: Array
-    lines: ChordLines
 
     @property
     def n_chordwise(self) -> int:
@@ -89,7 +85,6 @@ def period_lattice(rotor: RotorGeometry) -> PeriodLattice:
         0.5 * jnp.cross(first, second).reshape(-1, 3),
         middle.reshape(-1, 3),
         _last_panel(rotor.nodes),
-        chord_lines(rotor.nodes),
     )
 
 

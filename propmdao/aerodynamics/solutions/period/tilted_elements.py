@@ -35,16 +35,19 @@ from propmdao.aerodynamics.lattice.rings import spun
 from propmdao.aerodynamics.sections.laws import SectionLaws, section_laws
 from propmdao.aerodynamics.sections.recambering import SectionStates
 from propmdao.aerodynamics.solutions.blade_element import (
-    LEAST_SINE,
     BladeElements,
-    Element,
-    against_rotation,
-    element_in,
     flow_at,
     loss_at,
     solidity_of,
 )
 from propmdao.aerodynamics.solutions.case import RotorCase
+from propmdao.aerodynamics.solutions.elements import (
+    LEAST_SINE,
+    Element,
+    against_rotation,
+    element_in,
+    rough,
+)
 from propmdao.aerodynamics.solutions.period.flow import azimuths_for
 from propmdao.aerodynamics.solutions.period.onset import azimuths_of
 from propmdao.aerodynamics.solutions.result import TiltedLoads, sections_agree, unless_still
@@ -57,7 +60,7 @@ from propmdao.records.pytrees import Scalar
 from propmdao.runtime import linear_algebra
 from propmdao.runtime.compilation import compiled
 
-__all__ = ["evaluate", "flow_at", "solution", "solve"]
+__all__ = ["evaluate", "flow_at", "rough", "solution", "solve"]
 
 # Of the equations, which are of the order of the inflow ratio squared; derivatives are taken there.
 _TOLERANCE = 1.0e-13

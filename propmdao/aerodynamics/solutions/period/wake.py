@@ -12,8 +12,8 @@ Most of this flow is smooth, and that is where the time is saved:
 - What a ring does to a point changes slowly as the blade turns with it: where there are many
   azimuths, every second one is enough, and their Fourier series gives the others.
 
-What the first leaves out is added as it is in axial flight, where the wake does not drift and each
-strip has the same circulation at all azimuths: so without incidence nothing is left out.
+In axial flight what is older than a turn is read more coarsely still (`lattice.steady_wake`). The
+little that this changes is added here, so that without incidence both are the same flow.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ import numpy as np
 from jax import Array
 
 from propmdao.aerodynamics.lattice.chord_lines import at_collocation, at_segments
-from propmdao.aerodynamics.lattice.rings import wake_influence
+from propmdao.aerodynamics.lattice.steady_wake import left_by_coarse_reading
 from propmdao.aerodynamics.solutions.period.lattice import PeriodLattice
 from propmdao.aerodynamics.vortices.biot_savart import segment_normalwash
 from propmdao.aerodynamics.wakes.history import history_weights
@@ -53,6 +53,8 @@ class PeriodWake:
         Azimuth by which the circulation of each strip's wake is older than its nodes [rad].
     n_near : int or None
         Rings of blade 1 that act on every point; None if those of all blades do.
+    n_turn : int
+        Rings behind a blade that are younger than a turn.
     """
 
     sheets: Sheets
@@ -60,6 +62,7 @@ class PeriodWake:
     ages: Array
     delay: Array
     n_near: int | None = static(None)
+    n_turn: int = static(1)
 
     def parts(self) -> tuple[_WakePart, _WakePart | None]:
         """The rings that act on every point, and all others."""
@@ -122,16 +125,15 @@ def wake_normalwash(lattice: PeriodLattice, wake: PeriodWake) -> Array:
     (n_azimuths, n_azimuths, ns, n_panels) array
         Normalwash at an azimuth (first axis) per unit circulation of a strip at another [1/m].
     """
-    rings, lines, nc = lattice.lattice.rings, lattice.lines, lattice.n_chordwise
+    rings, lines, nc = lattice.lattice.rings, lattice.lattice.lines, lattice.n_chordwise
     near, far = wake.parts()
     later = _normalwash(rings.collocation, rings.normal, near)
     if far is not None:
         later += at_collocation(_normalwash(lines.points, lines.normals, far), nc)
-        exact, read = (_steady(points, wake) for points in (rings.collocation, lines.points))
-        left_out = jnp.einsum("csp,pc->sp", exact, rings.normal) - at_collocation(
-            jnp.einsum("csp,pc->sp", read, lines.normals), nc
+        in_axial_flight = jnp.einsum(
+            "csp,pc->sp", _as_in_axial_flight(lattice, wake), lines.normals
         )
-        later = later.at[:, 0].add(left_out)
+        later = later.at[:, 0].add(at_collocation(in_axial_flight, nc))
     later = _at_all(later, wake.drift.shape[0])
     # From so many azimuths later to the azimuth itself.
     number = jnp.arange(later.shape[0])
@@ -155,28 +157,24 @@ def wake_velocities(lattice: PeriodLattice, wake: PeriodWake, circulation: Array
     (n_azimuths, 3, n_segments) array
         Velocity at each azimuth [m/s].
     """
-    lines, nc = lattice.lines.points, lattice.n_chordwise
+    lines, nc = lattice.lattice.lines.points, lattice.n_chordwise
     segments = lattice.lattice.points[lattice.lattice.rings.normal.shape[0] :]
     near, far = wake.parts()
     total = _velocities(segments, near, circulation)
     if far is None:
         return _at_all(total, circulation.shape[0])
     total += at_segments(_velocities(lines, far, circulation), nc)
-    left_out = _steady(segments, wake) - at_segments(_steady(lines, wake), nc)
+    in_axial_flight = at_segments(_as_in_axial_flight(lattice, wake), nc)
     total = _at_all(total, circulation.shape[0])
-    return total + jnp.einsum("csp,ks->kcp", left_out, circulation)
+    return total + jnp.einsum("csp,ks->kcp", in_axial_flight, circulation)
 
 
-def _steady(points: Array, wake: PeriodWake) -> Array:
-    """Velocity per unit circulation of the strips by their far wake, as in axial flight.
-
-    Of shape (3, ns, n_points) [1/m].
-    """
-    near, nodes, core = wake.n_near or 0, wake.sheets.nodes, wake.sheets.trailing_core
-    total = wake_influence(points, nodes[:, :1, near:], core[near:])
-    if nodes.shape[1] > 1:
-        total += wake_influence(points, nodes[:, 1:], core)
-    return total
+def _as_in_axial_flight(lattice: PeriodLattice, wake: PeriodWake) -> Array:
+    """What the wake of axial flight has at the strips' lines beyond this one, (3, ns, n_lines)."""
+    sheets = wake.sheets
+    return left_by_coarse_reading(
+        lattice.lattice.lines, sheets.nodes, sheets.trailing_core, wake.n_turn
+    )
 
 
 def _normalwash(points: Array, normals: Array, part: _WakePart) -> Array:
