@@ -156,11 +156,15 @@
     for (const { key, described, bent, change } of message.rows) {
       if (!has.has(key)) continue;
       const known = rows.get(key);
-      [described, bent, change].forEach((text, k) => { known.row.cells[k + 1].textContent = text; });
+      [described, bent, change].forEach((text, k) => {
+        const cell = known.row.cells[k + 1];
+        cell.textContent = text ?? cell.textContent;
+        cell.classList.toggle("old", text === undefined);
+      });
       if (known.box) {
         const unit = known.box.dataset.unit;
         known.box.replaceChildren(bent + (unit ? ` ${unit} ` : " "));
-        make("span", known.box, { textContent: `(${change})` });
+        if (change) make("span", known.box, { textContent: `(${change})` });
       }
     }
     const isLatest = message.number >= number;
@@ -171,7 +175,7 @@
     said.replaceChildren();
     said.hidden = message.doubts.length === 0;
     for (const doubt of message.doubts) make("li", said, { textContent: doubt });
-    if (isLatest) find("state").textContent = message.is_complete ? "Up to date" : "Broadband noise is on its way";
+    if (isLatest) find("state").textContent = message.is_complete ? "Up to date" : "More is on its way";
     if (message.is_complete) {
       for (const name of ["described", "bent"]) find(`hear-${name}`).disabled = isOver;
       if (isLatest) hearAnew();
