@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import threading
+import warnings
 from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
 from typing import Any
@@ -67,7 +68,10 @@ class Workbench:
         self._compiled: set[object] = set()
         self._number = 0
         self._latest = LatestOnly[tuple[int, Design]](self._steps, self._refuse)
-        self._latest.ask((0, self._history.now))
+
+    def begin(self) -> None:
+        """Evaluate the described blade, in the thread of the work."""
+        self._latest.ask((self._number, self._history.now))
 
     def connect(self, tell: Callable[[Message], None]) -> None:
         """Tell somebody from now on, and nobody else, and begin with all there is to know.
@@ -223,8 +227,11 @@ class Workbench:
             if stage.described is None:
                 continue
             self._stage = stage
-            figures = _spectra if stage.with_broadband else _blade
-            self._say({"number": number, **figures(stage.bent.analysis, stage.described.analysis)})
+            draw = _spectra if stage.with_broadband else _blade
+            with warnings.catch_warnings():  # they stand below the numbers
+                warnings.simplefilter("ignore", UserWarning)
+                figures = draw(stage.bent.analysis, stage.described.analysis)
+            self._say({"number": number, **figures})
             yield
         self._compiled.add((n_blades, design.held))
 

@@ -314,7 +314,7 @@
       if (message.number < number) return;
       trouble(message.text);
       arrived();
-      find("state").textContent = "The numbers are those of the last blade that could be analysed";
+      find("state").textContent = "Grey numbers are of the blades before, which could be analysed";
       old(() => true);
     },
     saved: ({ text }) => { find("state").textContent = text; },
