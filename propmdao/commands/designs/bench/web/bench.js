@@ -241,6 +241,7 @@
   };
 
   // ---- sounds, repeated without a click; A and B as loud to each other as they are
+  const FADE = 0.01; // s, so that going over from one to the other is no click
   let context = null, playing = "", source = null, asked = 0;
   const fetched = new Map();
   const load = async (name) => {
@@ -265,20 +266,25 @@
       const { scale, buffer } = fetched.get(name);
       const loudest = Math.max(...[...fetched.values()].map((sound) => sound.scale));
       silence();
-      const gain = context.createGain();
-      gain.gain.value = 0.9 * scale / loudest;
-      source = context.createBufferSource();
-      source.buffer = buffer;
-      source.loop = true;
-      source.connect(gain).connect(context.destination);
-      source.start();
+      const { gain } = source = { node: context.createBufferSource(), gain: context.createGain() };
+      gain.gain.setValueAtTime(0, context.currentTime);
+      gain.gain.setTargetAtTime(0.9 * scale / loudest, context.currentTime, FADE);
+      source.node.buffer = buffer;
+      source.node.loop = true;
+      source.node.connect(gain).connect(context.destination);
+      source.node.start();
       find(`hear-${name}`).dataset.heard = String(scale);
     } catch (error) {
       trouble(`No sound: ${error.message}`);
       hear("");
     }
   };
-  const silence = () => { source?.stop(); source = null; };
+  const silence = () => {
+    if (!source) return;
+    source.gain.gain.setTargetAtTime(0, context.currentTime, FADE);
+    source.node.stop(context.currentTime + 8 * FADE);
+    source = null;
+  };
   const hearAnew = () => { if (playing) hear(playing); };
   for (const name of ["described", "bent"]) {
     find(`hear-${name}`).addEventListener("click", () => hear(playing === name ? "" : name));
