@@ -25,7 +25,10 @@
   let held = "", number = 0, socket = null, frame = 0, isOver = false;
 
   // ---- messages out
-  const steps = () => Object.fromEntries([...sliders].map(([name, { input }]) => [name, Number(input.value)]));
+  const steps = () => Object.fromEntries(
+    [...sliders].map(([name, { input, kept }]) => [name, follows(name) ? kept : Number(input.value)]));
+  // Of rotation speed and thrust one is held, and the other follows.
+  const follows = (name) => ["rpm", "thrust"].includes(name) && name !== held;
   const send = (kind, more = {}) => {
     if (socket?.readyState !== WebSocket.OPEN) return;
     if (kind !== "save") number += 1; // of a design
@@ -129,8 +132,10 @@
   const show = (message) => {
     held = message.held;
     for (const [name, slider] of sliders) {
-      slider.input.value = message.steps[name];
-      slider.input.disabled = ["rpm", "thrust"].includes(name) && name !== held;
+      slider.kept = message.steps[name];
+      slider.input.disabled = follows(name);
+      if (follows(name)) continue;
+      slider.input.value = slider.kept;
       write(slider);
     }
     for (const radio of document.querySelectorAll("input[name=held]")) radio.checked = radio.value === held;
@@ -166,6 +171,12 @@
         known.box.replaceChildren(bent + (unit ? ` ${unit} ` : " "));
         if (change) make("span", known.box, { textContent: `(${change})` });
       }
+    }
+    for (const { key, bent } of message.rows.filter(({ key }) => sliders.has(key) && follows(key))) {
+      const { input, output, start, step, unit } = sliders.get(key);
+      input.value = Math.round((Number(bent) - start) / step);
+      input.setAttribute("aria-valuetext", `${bent} ${unit}`);
+      output.textContent = `${bent} ${unit}`;
     }
     const isLatest = message.number >= number;
     arrived();
