@@ -7,11 +7,13 @@ import numpy as np
 import pytest
 
 from propmdao.analysis.elastic.materials import ElasticError, material_of
+from propmdao.analysis.elastic.modelled_blade import ModelledBlade
 from propmdao.analysis.request import Request
 from propmdao.analysis.single_point import analyze
 from propmdao.analysis.sweeping.sweeps import sweep
 from propmdao.formats.propellers import load_propeller
 from propmdao.formats.toml_files import read_toml, write_toml
+from propmdao.propeller.changes import Change
 from propmdao.propeller.checks import PropellerError
 from propmdao.records.fidelity import Fidelity
 from propmdao.records.models import ElasticModel, LoadModel
@@ -138,3 +140,21 @@ def test_sweeps_do_not_pretend(tmp_path):
     with pytest.raises(ValueError, match="rigid blades"):
         sweep(BLADE, [{"rpm": 4000.0}], tmp_path / "sweep.csv", elastic=True)
     assert LoadModel().elastic is None
+
+
+def test_a_reshaped_blade_keeps_its_stations_and_airfoils():
+    model = Request.of(rpm=5000.0, fidelity=COARSE).completed(MADE).model
+    modelled = ModelledBlade.of(MADE, Change(), model)
+    wide = dataclasses.replace(MADE, c_over_R=1.1 * MADE.c_over_R)
+    made = modelled.reshaped(wide)
+    assert made.changed is wide and made.polars is modelled.polars
+    assert float(made.unloaded.blade.chord_over_R[0]) == pytest.approx(1.1 * MADE.c_over_R[0])
+    moved = MADE.r_over_R.copy()
+    moved[1] += 0.001
+    others = (
+        dataclasses.replace(MADE, r_over_R=moved),
+        dataclasses.replace(MADE, airfoils=[(0.2, "naca4412")]),
+    )
+    for other in others:
+        with pytest.raises(ValueError, match="has the stations and airfoils that it had"):
+            modelled.reshaped(other)

@@ -2,12 +2,18 @@
 
 from __future__ import annotations
 
+import math
 from pathlib import Path
 
 import pytest
 
 from propmdao.formats.propellers import load_propeller
-from propmdao.formats.toml_files import read_toml, write_toml
+from propmdao.formats.toml_files import (
+    propeller_from_text,
+    read_toml,
+    toml_text,
+    write_toml,
+)
 from propmdao.propeller.checks import PropellerError
 from propmdao.propeller.identity import checksum
 from propmdao.records.models import Transition
@@ -84,3 +90,16 @@ def test_a_transition_that_there_is_not_is_refused(line: str, message: str, tmp_
     with pytest.raises(PropellerError) as caught:
         read_toml(path)
     assert str(caught.value) == f"{path}: {message}"
+
+
+def test_text_without_a_folder_names_coordinate_files_by_their_whole_path(tmp_path: Path) -> None:
+    section = tmp_path / "mine.dat"
+    around = [math.pi * k / 20.0 for k in range(41)]
+    ellipse = "".join(f"{0.5 + 0.5 * math.cos(a)} {0.06 * math.sin(a)}\n" for a in around)
+    section.write_text(f"mine\n{ellipse}")
+    path = tmp_path / "p.toml"
+    path.write_text(TEXT.replace("naca4412", "mine.dat"))
+    text = toml_text(read_toml(path))
+    assert f'airfoil = "{section}"' in text
+    assert 'airfoil = "mine.dat"' in toml_text(read_toml(path), tmp_path)
+    assert checksum(propeller_from_text(text, "text", None)) == checksum(read_toml(path))

@@ -10,6 +10,7 @@ from typing import Any
 
 from propmdao.commands.options import add_asked, add_command, add_propeller, asked_of, number
 from propmdao.commands.output.output_files import require_output
+from propmdao.commands.output.warning_lines import warning_lines
 from propmdao.records.listening import DISTANCE
 from propmdao.records.units import Range
 from propmdao.runtime.terminal import print_line
@@ -109,7 +110,8 @@ def _bench(options: argparse.Namespace) -> None:
 
     opened, key = bound_socket(options.port), new_key()
     with opened:
-        bench = Workbench(propeller, request, microphone, options.save)
+        with warning_lines("bench"):
+            bench = Workbench(propeller, request, microphone, options.save)
         print_line(f"{propeller.name}: {address(opened, key)} (Ctrl-C ends it)")
         sys.stdout.flush()
         serve(bench, opened, key, not options.no_browser)

@@ -47,14 +47,16 @@ class Stage(NamedTuple):
 
     Attributes
     ----------
-    described, bent : Evaluated
-        The described blade at the operating point of the design, and the design.
+    bent : Evaluated
+        The design.
+    described : Evaluated or None
+        The described blade at the operating point of the design; None where it is not known yet.
     with_broadband : bool
         Whether broadband noise is in them.
     """
 
-    described: Evaluated
     bent: Evaluated
+    described: Evaluated | None
     with_broadband: bool
 
     def table(self) -> list[dict[str, str]]:
@@ -63,24 +65,28 @@ class Stage(NamedTuple):
         Returns
         -------
         list of dict
-            Rows of text: key, label, described, bent, change; a heading has an empty key, and no
-            numbers, as rows of broadband noise that is not known yet.
+            Rows of text: key, label, bent, described, change, as far as they are known; a heading
+            has an empty key.
         """
-        rows, described = operation_and_levels(self.described.result)
-        _, bent = operation_and_levels(self.bent.result)
+        rows, bent = operation_and_levels(self.bent.result)
+        described: dict[str, Cell] = {}
+        if self.described is not None:
+            _, described = operation_and_levels(self.described.result)
         rows = [row for row in rows if row[1] and not row[1].startswith(_LEVEL)]
         rows.append(("noise at the microphone", "", ""))
         rows += [(label, _LEVEL + key, ".2f") for label, key in LEVEL_ROWS]
-        return [_row(row, described.get(row[1]), bent.get(row[1])) for row in rows]
+        return [_row(row, bent.get(row[1]), described.get(row[1])) for row in rows]
 
 
-def _row(row: Row, described: Cell, bent: Cell) -> dict[str, str]:
+def _row(row: Row, bent: Cell, described: Cell) -> dict[str, str]:
     """Row of a table, as text."""
     label, key, form = row
     made = {"key": key, "label": label.strip()}
-    if isinstance(described, float) and isinstance(bent, float):
-        made |= {"described": format(described, form), "bent": format(bent, form)}
-        made["change"] = format(bent - described, f"+z{form}")
+    if isinstance(bent, float):
+        made["bent"] = format(bent, form)
+        if isinstance(described, float):
+            made |= {"described": format(described, form)}
+            made["change"] = format(bent - described, f"+z{form}")
     return made
 
 
@@ -148,7 +154,8 @@ class Evaluator:
         Yields
         ------
         Stage
-            Loads and tones of both blades, then the same with broadband noise.
+            Loads and tones of the design, then of both blades, then the same with broadband noise;
+            of the design alone only where the described blade is not known yet.
 
         Raises
         ------
@@ -157,16 +164,26 @@ class Evaluator:
         """
         described = board.described(design)
         for with_broadband in (False, True):
+            if design == described:
+                both = self._evaluated(DESCRIBED, board, design, with_broadband)
+                yield Stage(both, both, with_broadband)
+                continue
             # The design first, for which somebody waits, and which may be none.
             bent = self._evaluated(BENT, board, design, with_broadband)
-            if design == described:
-                yield Stage(bent, bent, with_broadband)
-                continue
+            if not self._is_known(board, described, with_broadband):
+                yield Stage(bent, None, with_broadband)
             try:
                 baseline = self._evaluated(DESCRIBED, board, described, with_broadband)
             except ValueError as error:
                 raise ValueError(f"the described blade there: {error}") from error
-            yield Stage(baseline, bent, with_broadband)
+            yield Stage(bent, baseline, with_broadband)
+
+    def _is_known(self, board: Board, described: Design, with_broadband: bool) -> bool:
+        """Whether the described blade is analysed at this operating point and microphone."""
+        known = self._known.get(DESCRIBED)
+        if known is None or (known.loads_key, known.place) != board.keys(described):
+            return False
+        return with_broadband in known.results
 
     def _evaluated(
         self, name: str, board: Board, design: Design, with_broadband: bool

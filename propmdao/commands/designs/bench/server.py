@@ -94,6 +94,7 @@ def serve(bench: Workbench, opened: socket.socket, key: str, opens_browser: bool
         Whether a browser is told to open the page.
     """
     server = server_of(bench, opened, key)
+    bench.begin()
     if opens_browser:  # the socket listens already: whoever asks early waits
         opened.listen()
         threading.Thread(target=webbrowser.open, args=[address(opened, key)], daemon=True).start()

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import threading
+import warnings
 from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
 from propmdao.acoustics.sounds.recordings import common_full_scale
 from propmdao.analysis.request import Request
+from propmdao.analysis.results import Analysis
 from propmdao.analysis.sounds import pressure_record
 from propmdao.commands.designs.bench.design import Board, Design, History
 from propmdao.commands.designs.bench.evaluation import Evaluator, Stage
@@ -66,7 +68,10 @@ class Workbench:
         self._compiled: set[object] = set()
         self._number = 0
         self._latest = LatestOnly[tuple[int, Design]](self._steps, self._refuse)
-        self._latest.ask((0, self._history.now))
+
+    def begin(self) -> None:
+        """Evaluate the described blade, in the thread of the work."""
+        self._latest.ask((self._number, self._history.now))
 
     def connect(self, tell: Callable[[Message], None]) -> None:
         """Tell somebody from now on, and nobody else, and begin with all there is to know.
@@ -209,42 +214,45 @@ class Workbench:
             text = f"Compiling for {n_blades} blades: a minute where that was never done before"
             self._say({"kind": "working", "number": number, "text": text})
         for stage in self._evaluator.stages(self._board, design):
-            self._stage = stage
             self._say(
                 {
                     "kind": "numbers",
                     "number": number,
                     "rows": stage.table(),
                     "doubts": stage.bent.doubts,
-                    "is_complete": stage.with_broadband,
+                    "is_complete": stage.with_broadband and stage.described is not None,
                 }
             )
             yield
-            figures = _spectra(stage) if stage.with_broadband else _blade(stage)
+            if stage.described is None:
+                continue
+            self._stage = stage
+            draw = _spectra if stage.with_broadband else _blade
+            with warnings.catch_warnings():  # they stand below the numbers
+                warnings.simplefilter("ignore", UserWarning)
+                figures = draw(stage.bent.analysis, stage.described.analysis)
             self._say({"number": number, **figures})
             yield
         self._compiled.add((n_blades, design.held))
 
 
-def _blade(stage: Stage) -> Message:
-    """Figures of the bent blade."""
-    blades = {key: stage_of.analysis.propeller for key, stage_of in _both(stage).items()}
-    bent: Propeller = stage.bent.analysis.propeller
-    space = rotor_figures.in_space({bent.name: bent}).panels["all"]
+def _blade(bent: Analysis, described: Analysis) -> Message:
+    """Figures of the shapes of both blades."""
+    blades = {name: each.propeller for name, each in _named(bent, described).items()}
+    space = rotor_figures.in_space({bent.propeller.name: bent.propeller}).panels["all"]
     shapes = rotor_figures.shapes(blades).panels["all"]
     return {"kind": "blade", "panels": [_plain(panel) for panel in (*space, *shapes)]}
 
 
-def _spectra(stage: Stage) -> Message:
+def _spectra(bent: Analysis, described: Analysis) -> Message:
     """Spectra of both blades."""
-    analyses = {key: stage_of.analysis for key, stage_of in _both(stage).items()}
-    (panels,) = sound_figures.beside(analyses, [0]).panels.values()
+    (panels,) = sound_figures.beside(_named(bent, described), [0]).panels.values()
     return {"kind": "spectra", "panels": [_plain(panel) for panel in panels]}
 
 
-def _both(stage: Stage) -> dict[str, Any]:
+def _named(bent: Analysis, described: Analysis) -> dict[str, Analysis]:
     """Both blades by the names of their lines."""
-    return {"A, described": stage.described, "B, bent": stage.bent}
+    return {"A, described": described, "B, bent": bent}
 
 
 def _plain(panel: Panel) -> Message:

@@ -48,6 +48,7 @@ class Notes:
 @pytest.fixture
 def bench(propeller, asked, tmp_path):
     made = Workbench(propeller, asked, AT, tmp_path / "saved.toml")
+    made.begin()
     yield made
     made.close()
 
@@ -58,6 +59,7 @@ def fast_bench(propeller, asked, tmp_path):
     point = dataclasses.replace(asked.point, rpm=10500.0)
     fast = dataclasses.replace(asked, point=point)
     made = Workbench(propeller, fast, AT, tmp_path / "saved.toml")
+    made.begin()
     yield made
     made.close()
 

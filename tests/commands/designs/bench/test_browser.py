@@ -193,6 +193,8 @@ def test_drag_see_hear_undo_and_save(tab, tmp_path):
     dragged = tab.text("thrust")
     assert float(dragged) > described and tab.text("thrust", 1) == f"{described:.4f}"
     assert float(tab.text("at oaspl_total_dba")) > float(tab.text("at oaspl_total_dba", 1))
+    followed = tab.get("document.querySelector(`input[data-name='thrust']`).ariaValueText")
+    assert followed == f"{dragged} N"
     shown = tab.get("document.querySelector(`input[data-name='twist 3']`).ariaValueText")
     assert shown.startswith("+") and shown.endswith(" deg")
 

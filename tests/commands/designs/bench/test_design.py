@@ -9,6 +9,8 @@ import pytest
 
 from propmdao.commands.designs.bench.design import Board, Design, History
 from propmdao.commands.designs.bench.sliders import slider
+from propmdao.formats.propellers import load_propeller
+from propmdao.propeller.catalog import catalog_names
 from propmdao.propeller.design_choices import FREE
 
 
@@ -153,3 +155,16 @@ def test_undo_and_redo():
                                  "can_redo": False}  # fmt: skip
     history.redo()
     assert history.now == c
+
+
+@pytest.mark.parametrize("name", catalog_names())
+def test_every_blade_of_the_catalogue_can_be_bent_to_the_ends_of_a_slider(name, asked):
+    described = load_propeller(name)
+    board = Board(described, asked, (10.0 * described.diameter, -45.0), (4200.0, 2.5))
+    for each in board.sliders.values():
+        for steps in (-each.below, each.above):
+            blade = board.blade(moved(board, **{each.name.replace(" ", "_at_"): steps}))
+            assert blade.c_over_R.min() > 0.0
+            request = board.request(moved(board, **{each.name.replace(" ", "_at_"): steps}),
+                                    asked.model)  # fmt: skip
+            assert request.point.rpm > 0.0 and request.point.speed >= 0.0

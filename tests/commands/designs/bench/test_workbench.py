@@ -5,6 +5,7 @@ from __future__ import annotations
 import dataclasses
 import io
 
+import jax
 import numpy as np
 import pytest
 import soundfile
@@ -13,6 +14,7 @@ import propmdao as pm
 from propmdao.analysis.comparisons import operation_and_levels
 from propmdao.analysis.single_point import analyze
 from propmdao.commands.designs.bench.workbench import BENT, DESCRIBED, Workbench
+from propmdao.formats.toml_files import propeller_from_text
 
 
 def design(notes, kind="set", number=1, held="rpm", **steps):
@@ -46,6 +48,7 @@ def test_a_bent_blade_has_the_numbers_of_its_file(bench, notes, propeller, asked
     said = [message for message in notes.all[begun:] if message.get("number") == 7]
     # Loads and tones first; broadband noise after.
     assert [m["is_complete"] for m in said if m["kind"] == "numbers"] == [False, True]
+    assert [m["kind"] for m in said] == ["numbers", "blade", "numbers", "spectra"]
     early = next(m for m in said if m["kind"] == "numbers")
     later = {row["key"] for row in early["rows"] if row["key"] and "bent" not in row}
     assert later == {f"at oaspl_{part}" for part in ("broadband_db", "broadband_dba", "total_db",
@@ -76,6 +79,23 @@ def test_drags_are_no_steps_of_undo_and_the_described_blade_is_not_analysed_anew
     assert notes.number("thrust") == notes.number("thrust", "described")
 
 
+def test_the_bent_blade_is_told_before_the_described_one_where_both_are_new(bench, notes):
+    bench.receive(design(notes, number=1, twist_at_3=5))
+    assert bench.wait(240.0)
+    begun = len(notes.all)
+    bench.receive(design(notes, number=2, twist_at_3=5, rpm=-3))
+    assert bench.wait(240.0)
+    thrust = [
+        row
+        for message in notes.all[begun:]
+        if message["kind"] == "numbers"
+        for row in message["rows"]
+        if row["key"] == "thrust"
+    ]
+    assert ["described" in row for row in thrust] == [False, True, False, True]
+    assert len({row["bent"] for row in thrust}) == 1 and "change" not in thrust[0]
+
+
 def test_only_the_latest_of_many_drags_is_evaluated(bench, notes):
     begun = len(notes.all)
     for number in range(1, 41):
@@ -83,6 +103,55 @@ def test_only_the_latest_of_many_drags_is_evaluated(bench, notes):
     assert bench.wait(240.0)
     numbers = [m["number"] for m in notes.all[begun:] if m["kind"] == "numbers"]
     assert numbers[-2:] == [40, 40] and len(numbers) <= 4
+
+
+@pytest.fixture
+def compilations():
+    """Names of what JAX has compiled, or found compiled, since now."""
+    names: list[str] = []
+
+    def note(name: str, _: float, **__: object) -> None:
+        if "backend_compile" in name:
+            names.append(name)
+
+    jax.monitoring.register_event_duration_secs_listener(note)
+    yield names
+    jax.monitoring.unregister_event_duration_listener(note)
+
+
+def test_nothing_is_compiled_while_a_slider_is_dragged(bench, notes, compilations):
+    names = (
+        "chord_at_3 twist_at_3 camber_at_3 thickness_at_3 sweep_at_3 diameter rpm speed distance"
+    )
+    counts = []
+    for steps in (1, 2):
+        for number, name in enumerate(names.split()):
+            bench.receive(design(notes, "drag", number, **{name: steps}))
+            assert bench.wait(240.0)
+        counts.append(len(compilations))
+    # What compares two blades is compiled with the first of them; after that there is nothing.
+    assert counts[1] == counts[0]
+    assert notes.last("numbers")["is_complete"]
+
+
+@pytest.mark.slow
+def test_another_number_of_blades_is_compiled_once_and_the_bench_says_so(
+    bench, notes, compilations, asked
+):
+    for number, name in enumerate(("twist_at_1", "twist_at_2", "n_blades", "n_blades"), start=1):
+        if number == 3:
+            compilations.clear()
+        bench.receive(design(notes, number=number, **{name: 1, "chord_at_1": number}))
+        assert bench.wait(240.0)
+        if number == 3:
+            assert compilations and "for 3 blades" in notes.last("working")["text"]
+            assert notes.last("working")["number"] == 3
+            compilations.clear()
+    assert compilations == [] and notes.last("working")["number"] == 3
+    three = propeller_from_text(bench.text(), "text", None)
+    assert three.n_blades == 3
+    thrust = float(analyze(three, **records_of(asked)).loads.thrust)
+    assert notes.number("thrust") == pytest.approx(thrust, abs=6e-5)
 
 
 def test_a_blade_that_has_no_analysis_is_one_line_and_the_bench_goes_on(fast_bench, listener):

@@ -25,7 +25,10 @@
   let held = "", number = 0, socket = null, frame = 0, isOver = false;
 
   // ---- messages out
-  const steps = () => Object.fromEntries([...sliders].map(([name, { input }]) => [name, Number(input.value)]));
+  const steps = () => Object.fromEntries(
+    [...sliders].map(([name, { input, kept }]) => [name, follows(name) ? kept : Number(input.value)]));
+  // Of rotation speed and thrust one is held, and the other follows.
+  const follows = (name) => ["rpm", "thrust"].includes(name) && name !== held;
   const send = (kind, more = {}) => {
     if (socket?.readyState !== WebSocket.OPEN) return;
     if (kind !== "save") number += 1; // of a design
@@ -129,8 +132,10 @@
   const show = (message) => {
     held = message.held;
     for (const [name, slider] of sliders) {
-      slider.input.value = message.steps[name];
-      slider.input.disabled = ["rpm", "thrust"].includes(name) && name !== held;
+      slider.kept = message.steps[name];
+      slider.input.disabled = follows(name);
+      if (follows(name)) continue;
+      slider.input.value = slider.kept;
       write(slider);
     }
     for (const radio of document.querySelectorAll("input[name=held]")) radio.checked = radio.value === held;
@@ -156,12 +161,22 @@
     for (const { key, described, bent, change } of message.rows) {
       if (!has.has(key)) continue;
       const known = rows.get(key);
-      [described, bent, change].forEach((text, k) => { known.row.cells[k + 1].textContent = text; });
+      [described, bent, change].forEach((text, k) => {
+        const cell = known.row.cells[k + 1];
+        cell.textContent = text ?? cell.textContent;
+        cell.classList.toggle("old", text === undefined);
+      });
       if (known.box) {
         const unit = known.box.dataset.unit;
         known.box.replaceChildren(bent + (unit ? ` ${unit} ` : " "));
-        make("span", known.box, { textContent: `(${change})` });
+        if (change) make("span", known.box, { textContent: `(${change})` });
       }
+    }
+    for (const { key, bent } of message.rows.filter(({ key }) => sliders.has(key) && follows(key))) {
+      const { input, output, start, step, unit } = sliders.get(key);
+      input.value = Math.round((Number(bent) - start) / step);
+      input.setAttribute("aria-valuetext", `${bent} ${unit}`);
+      output.textContent = `${bent} ${unit}`;
     }
     const isLatest = message.number >= number;
     arrived();
@@ -171,7 +186,7 @@
     said.replaceChildren();
     said.hidden = message.doubts.length === 0;
     for (const doubt of message.doubts) make("li", said, { textContent: doubt });
-    if (isLatest) find("state").textContent = message.is_complete ? "Up to date" : "Broadband noise is on its way";
+    if (isLatest) find("state").textContent = message.is_complete ? "Up to date" : "More is on its way";
     if (message.is_complete) {
       for (const name of ["described", "bent"]) find(`hear-${name}`).disabled = isOver;
       if (isLatest) hearAnew();
@@ -237,6 +252,7 @@
   };
 
   // ---- sounds, repeated without a click; A and B as loud to each other as they are
+  const FADE = 0.01; // s, so that going over from one to the other is no click
   let context = null, playing = "", source = null, asked = 0;
   const fetched = new Map();
   const load = async (name) => {
@@ -261,20 +277,25 @@
       const { scale, buffer } = fetched.get(name);
       const loudest = Math.max(...[...fetched.values()].map((sound) => sound.scale));
       silence();
-      const gain = context.createGain();
-      gain.gain.value = 0.9 * scale / loudest;
-      source = context.createBufferSource();
-      source.buffer = buffer;
-      source.loop = true;
-      source.connect(gain).connect(context.destination);
-      source.start();
+      const { gain } = source = { node: context.createBufferSource(), gain: context.createGain() };
+      gain.gain.setValueAtTime(0, context.currentTime);
+      gain.gain.setTargetAtTime(0.9 * scale / loudest, context.currentTime, FADE);
+      source.node.buffer = buffer;
+      source.node.loop = true;
+      source.node.connect(gain).connect(context.destination);
+      source.node.start();
       find(`hear-${name}`).dataset.heard = String(scale);
     } catch (error) {
       trouble(`No sound: ${error.message}`);
       hear("");
     }
   };
-  const silence = () => { source?.stop(); source = null; };
+  const silence = () => {
+    if (!source) return;
+    source.gain.gain.setTargetAtTime(0, context.currentTime, FADE);
+    source.node.stop(context.currentTime + 8 * FADE);
+    source = null;
+  };
   const hearAnew = () => { if (playing) hear(playing); };
   for (const name of ["described", "bent"]) {
     find(`hear-${name}`).addEventListener("click", () => hear(playing === name ? "" : name));
@@ -310,7 +331,7 @@
       if (message.number < number) return;
       trouble(message.text);
       arrived();
-      find("state").textContent = "The numbers are those of the last blade that could be analysed";
+      find("state").textContent = "Grey numbers are of the blades before, which could be analysed";
       old(() => true);
     },
     saved: ({ text }) => { find("state").textContent = text; },

@@ -54,7 +54,7 @@ const drawing = (() => {
     const points = data.map(({ x, y }) => x.map((value, k) => [value === null ? NaN
       : isLog ? Math.log10(value) : value, y[k] ?? NaN]));
     const known = points.flat().filter(([x, y]) => Number.isFinite(x) && Number.isFinite(y));
-    let across = rangeOf(xaxis, known.map(([x]) => x), 0), up = rangeOf(yaxis, known.map(([, y]) => y), 0.05);
+    let across = rangeOf(xaxis, known.map(([x]) => x), xaxis.rangemode ? 0.04 : 0), up = rangeOf(yaxis, known.map(([, y]) => y), 0.05);
     if (yaxis.scaleanchor) { // one scale along both axes
       const scale = Math.max((across[1] - across[0]) / (box.right - box.left), (up[1] - up[0]) / (box.bottom - box.top));
       const around = ([low, high], size) => {
