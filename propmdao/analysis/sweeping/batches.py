@@ -142,7 +142,8 @@ class _Batch(NamedTuple):
         """Loads at the points, or why a point has none."""
         points = [*self.points.values()]
         solve = _at_rpm if points[0].thrust is None else _at_thrust
-        return solve(self, points)
+        result, _ = outcome_of(solve, self, points)
+        return [result] * len(points) if isinstance(result, Exception) else result
 
 
 def _batches(modelled: ModelledBlade | Exception, requests: Mapping[int, Any]) -> Iterator[_Batch]:

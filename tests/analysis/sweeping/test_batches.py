@@ -62,6 +62,17 @@ def test_failures_are_of_their_points() -> None:
     assert "tip Mach number must be below 1" in str(outcome.result)
 
 
+def test_a_call_that_fails_fails_its_points(monkeypatch: pytest.MonkeyPatch) -> None:
+    def out_of_memory(*_: Any) -> Any:
+        raise MemoryError("no room")
+
+    monkeypatch.setattr(batches, "_solve_all", out_of_memory)
+    asked: list[Any] = [{"rpm": 3000.0, **ELEMENTS}, {"rpm": -1.0, **ELEMENTS}]
+    first, second = analyze_each(PROPELLER, asked)
+    assert isinstance(first.result, MemoryError)
+    assert isinstance(second.result, ValueError)
+
+
 def test_rotation_speeds_and_thrusts_may_be_mixed() -> None:
     """And requests with single values; each in the call of its kind."""
     asked: list[Any] = [
