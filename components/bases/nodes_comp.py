@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 from collections.abc import Iterator, Mapping, Sequence
+from itertools import chain
 from typing import Any
 
 import numpy as np
@@ -46,10 +47,11 @@ class NodesComp(JaxComponent):
     point, with OpenMDAO's own methods inputs that all of them share and outputs that never change.
     Its ``function`` knows of one point only. The points share the cores of the processor, one each:
     the compiled code is that of one point, whatever their number, so is the memory of an
-    evaluation, and a point that no seed touches is not differentiated. An accelerator has all of
-    them in one call instead. A point that is differentiated keeps its linearisation until its
-    inputs change; where all its outputs are scalars and vectors in space, their gradients alone:
-    missions ask for many products at the same points.
+    evaluation, and a point that no seed touches is not differentiated. `points_in_a_call` may put
+    several into a call instead, and an accelerator has all of them in one. A point that is
+    differentiated keeps its linearisation until its inputs change; where all its outputs are
+    scalars and vectors in space, their gradients alone: missions ask for many products at the same
+    points.
 
     Options
     -------
@@ -106,17 +108,30 @@ class NodesComp(JaxComponent):
 
     def compute(self, inputs: Any, outputs: Any) -> None:
         require_real(self)
-        if is_accelerated() and self.in_one_call() and self.n_points() > 1:
-            points = [point for _, point in self._points(inputs)]
-            together = self._together(self._at_all_nodes(points, self.n_points()))
-            if isinstance(together, om.AnalysisError):
-                raise together
-            for name, value in together.items():
-                outputs[name] = value
+        size = self.points_in_a_call()
+        if size == 1:
+            for node, values in enumerate(side_by_side(self._at_node, self._points(inputs))):
+                for name in self._output_shapes:
+                    self._view(node, name, outputs)[:] = values[name]
             return
-        for node, values in enumerate(side_by_side(self._at_node, self._points(inputs))):
-            for name in self._output_shapes:
-                self._view(node, name, outputs)[:] = values[name]
+        points = [point for _, point in self._points(inputs)]
+        calls = [points[first : first + size] for first in range(0, len(points), size)]
+        of_calls = side_by_side(lambda call: self._at_all_nodes(call, size), calls)
+        together = self._together(list(chain.from_iterable(of_calls)))
+        if isinstance(together, om.AnalysisError):
+            raise together
+        for name, value in together.items():
+            outputs[name] = value
+
+    def points_in_a_call(self) -> int:
+        """Number of points that `compute` evaluates in a call, of which each core has its own.
+
+        Returns
+        -------
+        int
+            All on an accelerator; one on a processor, unless a subclass knows better.
+        """
+        return self.n_points() if is_accelerated() and self.in_one_call() else 1
 
     def _at_node(self, node_and_point: tuple[int, Arrays]) -> Mapping[str, Any]:
         """Values at a node's point."""

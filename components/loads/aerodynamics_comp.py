@@ -8,6 +8,7 @@ from typing import Any
 
 import openmdao.api as om
 
+from propmdao.aerodynamics.calls import points_in_a_call
 from propmdao.aerodynamics.solutions.edgewise import (
     edgewise_advance_ratio,
     is_slow,
@@ -189,6 +190,10 @@ class AerodynamicsComp(NodesComp, RootComponent):
         constants = self._in_slow_flight if slow else self.constants
         searched = self._search_constants(constants)
         return {**evaluate(self.search, self.static, searched, inputs), "constants": constants}
+
+    def points_in_a_call(self) -> int:
+        n, blade_element = self.n_points(), self.static.blade_element
+        return min(n, points_in_a_call(n, blade_element)) if self.in_one_call() else 1
 
     def in_one_call(self) -> bool:
         return not self._has_tilted_wake()  # which is of its own length at each point

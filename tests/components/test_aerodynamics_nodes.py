@@ -6,7 +6,6 @@ import pytest
 from numpy.testing import assert_allclose
 
 from propmdao.components import AerodynamicsComp, RotationSpeedComp, TrimmedAerodynamicsComp
-from propmdao.components.bases import nodes_comp
 
 AIR = {
     "speed": np.array([8.0, 0.5]),
@@ -50,7 +49,7 @@ def test_partials_at_nodes(problem, assert_directional, kind, loads):
 
 
 @pytest.mark.slow  # derivatives of the search compile for long
-def test_what_an_accelerator_has_searched_is_known_to_derivatives(problem, monkeypatch):
+def test_what_a_call_has_searched_for_is_known_to_derivatives(problem, monkeypatch):
     """By blade elements, which compile soonest: the same derivatives, and no search but the call's.
 
     A node that has not changed takes no part in a further call.
@@ -58,10 +57,12 @@ def test_what_an_accelerator_has_searched_is_known_to_derivatives(problem, monke
     kind = TrimmedAerodynamicsComp
     values, options = {**AIR, **GIVEN[kind]}, {"blade_element": True, "loads": False}
     of, wrt = ["comp.rpm", "comp.torque"], ["comp.speed", "comp.thrust_required"]
-    alone = problem(kind, 2, values, **options).compute_totals(of, wrt)
-    monkeypatch.setattr(nodes_comp, "is_accelerated", lambda: True)
+    with monkeypatch.context() as one_by_one:
+        one_by_one.setattr(kind, "points_in_a_call", lambda self: 1)
+        alone = problem(kind, 2, values, **options).compute_totals(of, wrt)
     together = problem(kind, 2, values, **options)
     comp = together.model.comp
+    assert comp.points_in_a_call() == 2
     monkeypatch.setattr(comp, "found_at", lambda _: pytest.fail("searched once more"))
     for key, expected in alone.items():
         assert_allclose(together.compute_totals(of, wrt)[key], expected, rtol=1e-6, atol=1e-12)
@@ -72,6 +73,18 @@ def test_what_an_accelerator_has_searched_is_known_to_derivatives(problem, monke
     together.set_val("comp.speed", [8.0, 1.0])
     together.run_model()
     assert [point["speed"][0] for point in asked] == [1.0]
+
+
+@pytest.mark.slow  # it compiles the lattice twice
+def test_three_nodes_of_the_lattice_are_those_of_single_calls(problem):
+    values = {"speed": [8.0, 4.0, 0.0], "rpm": [4200.0, 4400.0, 4600.0]}
+    three = problem(AerodynamicsComp, 3, values)
+    assert three.model.comp.points_in_a_call() == 3
+    for node in range(3):
+        one = problem(AerodynamicsComp, None, {name: value[node] for name, value in values.items()})
+        for name in ("thrust", "torque", "circulation", "load_force"):
+            expected = np.squeeze(one.get_val(f"comp.{name}"))
+            assert_allclose(three.get_val(f"comp.{name}")[node], expected, rtol=1e-8, atol=1e-10)
 
 
 @pytest.mark.parametrize("kind", [AerodynamicsComp, TrimmedAerodynamicsComp])

@@ -11,6 +11,7 @@ from typing import Any, NamedTuple
 import jax
 
 from propmdao.acoustics.kinematics.limits import require_subsonic_tip
+from propmdao.aerodynamics.calls import points_in_a_call
 from propmdao.aerodynamics.sections.polars.family import SectionPolars
 from propmdao.aerodynamics.solutions import axial, blade_element
 from propmdao.aerodynamics.solutions.case import RotorCase
@@ -36,13 +37,8 @@ from propmdao.propeller.description import Propeller
 from propmdao.records.models import Model
 from propmdao.records.states import OperatingPoint, RotorState
 from propmdao.runtime.compilation import compiled
-from propmdao.runtime.side_by_side import at_all, is_accelerated, n_cores, side_by_side, stacked
+from propmdao.runtime.side_by_side import at_all, n_cores, side_by_side, stacked
 
-#: Points that are solved for in one compiled call; fewer are filled up. By the lattice on a
-#: processor a call takes two thirds of the time of its points, more of them do not fit the caches.
-BATCH_SIZE, LATTICE_BATCH_SIZE = 64, 4
-#: Points of a blade below which the lattice has a call for each, whose code is compiled already.
-FEWEST_OF_LATTICE = 3
 _SHORT_POINTS = 8  # in axial flight, that a core has in a row
 
 
@@ -56,9 +52,8 @@ def analyze_each(
     """Analyse a propeller at several points, as `propmdao.analyze` does at one.
 
     The blade of each change is made ready once, and its points are solved for in compiled calls of
-    several: `BATCH_SIZE` by blade elements and on an accelerator, `LATTICE_BATCH_SIZE` by the
-    lattice. Each core has a call of its own, and then the noise of a point of its own. Marches in
-    time go one after the other, for the wakes of each fill memory.
+    several (`aerodynamics.calls`). Each core has a call of its own, and then the noise of a point
+    of its own. Marches in time go one after the other, for the wakes of each fill memory.
 
     Parameters
     ----------
@@ -147,7 +142,8 @@ class _Batch(NamedTuple):
         """Loads at the points, or why a point has none."""
         points = [*self.points.values()]
         solve = _at_rpm if points[0].thrust is None else _at_thrust
-        return solve(self, points)
+        result, _ = outcome_of(solve, self, points)
+        return [result] * len(points) if isinstance(result, Exception) else result
 
 
 def _batches(modelled: ModelledBlade | Exception, requests: Mapping[int, Any]) -> Iterator[_Batch]:
@@ -161,9 +157,6 @@ def _batches(modelled: ModelledBlade | Exception, requests: Mapping[int, Any]) -
     if loads.elastic is not None or loads.unsteady is not None:
         return
     solver: Solver = blade_element if loads.blade_element else axial
-    size, fewest = LATTICE_BATCH_SIZE, FEWEST_OF_LATTICE
-    if loads.blade_element or is_accelerated():
-        size, fewest = BATCH_SIZE, 1
     for has_thrust in (False, True):
         points = [
             (place, request.point)
@@ -171,7 +164,8 @@ def _batches(modelled: ModelledBlade | Exception, requests: Mapping[int, Any]) -
             if request.point.incidence_deg == 0.0
             and (request.point.thrust is not None) == has_thrust
         ]
-        for first in range(0, len(points), size) if len(points) >= fewest else ():
+        size = points_in_a_call(len(points), loads.blade_element)
+        for first in range(0, len(points), size) if size > 1 else ():
             yield _Batch(solver, modelled.unloaded, dict(points[first : first + size]), size)
 
 

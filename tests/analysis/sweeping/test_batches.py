@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 import propmdao as pm
+from propmdao.aerodynamics import calls
 from propmdao.aerodynamics.solutions import axial
 from propmdao.analysis.request import Request
 from propmdao.analysis.results import Analysis
@@ -47,7 +48,7 @@ def test_failures_are_of_their_points() -> None:
         {"thrust": thrust, "speed": speed, **ELEMENTS}
         for thrust, speed in ((1.0, 4.0), (500.0, 4.0), (1.0, 310.0), (-1.0, 4.0), (2.0, 4.0))
     ]
-    asked += [asked[0]] * batches.BATCH_SIZE
+    asked += [asked[0]] * calls.MANY
     outcomes = list(analyze_each(PROPELLER, asked))
     said = [str(o.result) if isinstance(o.result, Exception) else "" for o in outcomes]
     assert said[0] == said[4] == ""
@@ -59,6 +60,17 @@ def test_failures_are_of_their_points() -> None:
     fast: Any = {"rpm": 4e5, "speed": 0.0, **ELEMENTS}
     (outcome,) = analyze_each(PROPELLER, [fast])
     assert "tip Mach number must be below 1" in str(outcome.result)
+
+
+def test_a_call_that_fails_fails_its_points(monkeypatch: pytest.MonkeyPatch) -> None:
+    def out_of_memory(*_: Any) -> Any:
+        raise MemoryError("no room")
+
+    monkeypatch.setattr(batches, "_solve_all", out_of_memory)
+    asked: list[Any] = [{"rpm": 3000.0, **ELEMENTS}, {"rpm": -1.0, **ELEMENTS}]
+    first, second = analyze_each(PROPELLER, asked)
+    assert isinstance(first.result, MemoryError)
+    assert isinstance(second.result, ValueError)
 
 
 def test_rotation_speeds_and_thrusts_may_be_mixed() -> None:
@@ -98,23 +110,23 @@ def test_the_lattice_goes_in_calls_of_several_points(
     """With the numbers and the failures of points that are solved for alone."""
     ((name, values),) = drive.items()
     asked: list[Any] = [{name: value, "speed": 4.0, **SMALL} for value in values]
-    calls = []
+    solvers = []
     for solve in ("_solve_all", "_trim_all"):
         function = getattr(batches, solve)
         monkeypatch.setattr(
-            batches, solve, lambda *args, f=function: (calls.append(args[0]), f(*args))[1]
+            batches, solve, lambda *args, f=function: (solvers.append(args[0]), f(*args))[1]
         )
     alone = [next(analyze_each(PROPELLER, [one])) for one in asked]
-    assert not calls  # the code of one point is compiled already
+    assert not solvers  # the code of one point is compiled already
     together = list(analyze_each(PROPELLER, asked))
-    assert calls == [axial]
+    assert solvers == [axial]
     for one, other in zip(together[:2], alone[:2], strict=True):
         np.testing.assert_allclose(numbers(one.result), numbers(other.result), rtol=1e-8)
     assert str(together[2].result) == str(alone[2].result) != ""
-    monkeypatch.setattr(batches, "is_accelerated", lambda: True)
-    monkeypatch.setattr(batches, "BATCH_SIZE", batches.LATTICE_BATCH_SIZE)
+    monkeypatch.setattr(calls, "is_accelerated", lambda: True)
+    monkeypatch.setattr(calls, "MANY", 4)  # the code of which is compiled
     (on_accelerator,) = analyze_each(PROPELLER, asked[:1])
-    assert calls == [axial, axial]  # whatever their number
+    assert solvers == [axial, axial]  # whatever their number
     np.testing.assert_allclose(numbers(on_accelerator.result), numbers(alone[0].result), rtol=1e-8)
 
 
