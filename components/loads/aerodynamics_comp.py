@@ -9,15 +9,15 @@ from typing import Any
 import openmdao.api as om
 
 from propmdao.aerodynamics.calls import points_in_a_call
-from propmdao.aerodynamics.solutions.edgewise import (
+from propmdao.aerodynamics.solutions.known_root import solved_at
+from propmdao.aerodynamics.solutions.period.flow import azimuths_for
+from propmdao.aerodynamics.solutions.result import failure
+from propmdao.aerodynamics.wakes.edgewise import (
     edgewise_advance_ratio,
     is_slow,
     longer,
     warn_if_fast,
 )
-from propmdao.aerodynamics.solutions.known_root import solved_at
-from propmdao.aerodynamics.solutions.period.flow import azimuths_for
-from propmdao.aerodynamics.solutions.result import failure
 from propmdao.aerodynamics.wakes.helical import wake_transport
 from propmdao.components.bases.array_function import Arrays, evaluate
 from propmdao.components.bases.nodes_comp import NodesComp

@@ -12,14 +12,14 @@ import openmdao.api as om
 
 from propmdao.acoustics.kinematics.limits import require_subsonic_tip
 from propmdao.aerodynamics.solutions.case import RotorCase
-from propmdao.aerodynamics.solutions.edgewise import (
+from propmdao.aerodynamics.solutions.marching.limits import MarchError
+from propmdao.aerodynamics.solutions.marching.marched import march
+from propmdao.aerodynamics.solutions.result import failure
+from propmdao.aerodynamics.wakes.edgewise import (
     edgewise_advance_ratio,
     grid_for,
     warn_if_fast,
 )
-from propmdao.aerodynamics.solutions.marching.limits import MarchError
-from propmdao.aerodynamics.solutions.marching.marched import march
-from propmdao.aerodynamics.solutions.result import failure
 from propmdao.aerodynamics.wakes.helical import WakeTransport, wake_transport
 from propmdao.components.bases.array_function import Arrays, Derivatives
 from propmdao.components.bases.nodes_comp import NodesComp

@@ -24,16 +24,16 @@ from propmdao.aerodynamics.sections.polars.family import SectionPolars, warn_out
 from propmdao.aerodynamics.sections.polars.table import warn_outside
 from propmdao.aerodynamics.solutions import axial, blade_element, periodic
 from propmdao.aerodynamics.solutions.case import RotorCase
-from propmdao.aerodynamics.solutions.edgewise import (
+from propmdao.aerodynamics.solutions.marching.marched_loads import Progress
+from propmdao.aerodynamics.solutions.period import tilted_elements
+from propmdao.aerodynamics.solutions.result import RotorLoads, TiltedLoads
+from propmdao.aerodynamics.trim import Solver, rotation_bounds, solve_for_thrust, trim
+from propmdao.aerodynamics.wakes.edgewise import (
     edgewise_advance_ratio,
     is_slow,
     longer,
     warn_if_fast,
 )
-from propmdao.aerodynamics.solutions.marching.marched_loads import Progress
-from propmdao.aerodynamics.solutions.period import tilted_elements
-from propmdao.aerodynamics.solutions.result import RotorLoads, TiltedLoads
-from propmdao.aerodynamics.trim import Solver, rotation_bounds, solve_for_thrust, trim
 from propmdao.aerodynamics.wakes.helical import wake_transport
 from propmdao.analysis.elastic.deflections import Solved, deflected
 from propmdao.analysis.elastic.materials import material_of

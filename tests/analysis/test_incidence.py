@@ -9,8 +9,8 @@ import pytest
 import propmdao as pm
 from propmdao.acoustics.broadband.rotor import rotor_self_noise
 from propmdao.acoustics.levels.decibels import level_db, mean_square
-from propmdao.aerodynamics.solutions.edgewise import FastEdgewiseWarning
 from propmdao.aerodynamics.solutions.marching.marched_loads import MarchedLoads
+from propmdao.aerodynamics.wakes.edgewise import FastEdgewiseWarning
 from propmdao.analysis.flights.flyovers import fly_over
 from propmdao.analysis.self_noise import BANDS_HZ, strip_flow
 from propmdao.analysis.single_point import analyze

@@ -169,8 +169,12 @@ def left_by_coarse_reading(
 
     Parameters
     ----------
-    lines, nodes, core_radius
-        As `steady_wake` takes them.
+    lines : ChordLines
+        Points of the strips of blade 1.
+    nodes : (ns + 1, n_blades, n_nodes, 3) array
+        Trailing filaments of all blades, blade 1 first [m].
+    core_radius : (n_nodes - 1,) array
+        Core radius along the filaments [m].
     n_turn : int
         Rings behind a blade within the first turn.
 

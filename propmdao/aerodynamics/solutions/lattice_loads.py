@@ -259,11 +259,11 @@ def loads_with_wake(
     ns = strips.chord.size
     normalwash = (onset.velocity[:, :n_panels] * normal.T).sum(axis=0)
     by_wake = wake.normalwash(normal, lattice.lines)
-    given = blades.downwash.solve(jnp.column_stack([-normalwash, by_wake.T]))
+    solved = blades.downwash.solve(jnp.column_stack([-normalwash, by_wake.T]))
     relative_speed = onset.relative_speed
     # Without the wake, by each unknown: none, and the recambering of each strip.
-    alone = jnp.column_stack([given[:, 0], blades.recambered * relative_speed])
-    carried = given[:, 1:]
+    alone = jnp.column_stack([solved[:, 0], blades.recambered * relative_speed])
+    carried = solved[:, 1:]
     # The last rings carry the circulation of their whole strip, and the wake's.
     last = linear_algebra.solve(jnp.eye(ns) + carried[-ns:], alone[-ns:])
     strip_flow = StripFlow(strips, relative_speed, last[:, 0], last[:, 1:])

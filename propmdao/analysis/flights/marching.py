@@ -6,13 +6,13 @@ import dataclasses
 
 from propmdao.acoustics.kinematics.limits import require_subsonic_tip
 from propmdao.aerodynamics.solutions.case import RotorCase
-from propmdao.aerodynamics.solutions.edgewise import (
+from propmdao.aerodynamics.solutions.marching.marched import march
+from propmdao.aerodynamics.solutions.marching.marched_loads import MarchedLoads, Progress
+from propmdao.aerodynamics.wakes.edgewise import (
     edgewise_advance_ratio,
     grid_for,
     warn_if_fast,
 )
-from propmdao.aerodynamics.solutions.marching.marched import march
-from propmdao.aerodynamics.solutions.marching.marched_loads import MarchedLoads, Progress
 from propmdao.aerodynamics.wakes.helical import wake_transport
 from propmdao.records.models import Model
 from propmdao.records.states import OperatingPoint, RotorState

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import openmdao.api as om
 
-from propmdao.aerodynamics.solutions.edgewise import FastEdgewiseWarning
+from propmdao.aerodynamics.wakes.edgewise import FastEdgewiseWarning
 from propmdao.commands.output.progress import progress
 from propmdao.components.drivers.best_design_file import write_best_design
 from propmdao.components.drivers.differential_evolution_driver import DifferentialEvolutionDriver

@@ -8,7 +8,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 from propmdao.acoustics.kinematics.observers import arc
-from propmdao.aerodynamics.solutions.edgewise import FastEdgewiseWarning, longer
+from propmdao.aerodynamics.wakes.edgewise import FastEdgewiseWarning, longer
 from propmdao.analysis.single_point import analyze
 from propmdao.components import PropellerGroup, TrimmedAerodynamicsComp
 
