@@ -38,8 +38,8 @@ def test_interrupt_ends_quietly(
     def interrupted(*_: object, **__: object) -> None:
         raise KeyboardInterrupt
 
-    module = types.SimpleNamespace(analyze=interrupted)
-    monkeypatch.setitem(sys.modules, "propmdao.analysis.single_point", module)
+    module = types.SimpleNamespace(analyze_each=interrupted)
+    monkeypatch.setitem(sys.modules, "propmdao.analysis.sweeping.batches", module)
     assert main(["analyze", PROPELLER, "--rpm", "4000"]) == 130
     output = capsys.readouterr()
     assert output.out == output.err == ""
