@@ -1,13 +1,13 @@
 """Time that the tones of a full surface take: 5,200 panels, 10 harmonics, one and nine observers.
 
-Gathering 5,200 panels and 216 forces on 84 rings is a product of 84 polynomials and 20 parts of the
-harmonics, 60 of forces: 10 million multiplications and additions, 1 ms of one core at 10 a
-nanosecond. An observer hears 84 rings at 56 azimuths, 4,700 in all: 70 operations for the way, 45
-for cosine and sine, and 22 for each of 10 harmonics of four components. That is 1.6 million, 0.2 ms
-at 8 a nanosecond. So the floor is 1.2 ms for one observer and 2.8 ms for nine.
+Gathering 5,200 panels and 216 forces on 98 rings is a product of 98 polynomials and 20 parts of the
+harmonics, 60 of forces: 12 million multiplications and additions, 1.2 ms of one core at 10 a
+nanosecond. An observer hears 98 rings at 56 azimuths, 5,500 in all: 70 operations for the way, 45
+for cosine and sine, and 22 for each of 10 harmonics of four components. That is 1.8 million, 0.2 ms
+at 8 a nanosecond. So the floor is 1.4 ms for one observer and 3.2 ms for nine.
 
-Measured on a busy machine, time of the processor: 5 and 7 ms, the reverse derivative 28 ms for
-nine. Each panel by itself took 6 and 50 ms, the derivative 390 ms.
+Measured on a busy machine, time of the processor: 6 and 9 ms, the reverse derivative 34 ms for
+nine. Each panel by itself took 6 and 50 ms, the derivative 400 ms.
 """
 
 from __future__ import annotations

@@ -1,4 +1,10 @@
-"""Time of a rotor's self-noise: 24 strips, 24 azimuths, 30 bands; and of all sound on a sphere."""
+"""Time of a rotor's self-noise: 24 strips, 24 azimuths, 30 bands; and of all sound on a sphere.
+
+An observer hears 17,000 of these. Six mechanisms each take a power of ten and 20 to 40 operations
+for a level, 4 million together: 0.5 ms at 8 a nanosecond, 5 ms for nine observers. Measured on a
+busy machine, in 27 bands: 11 ms for nine, the reverse derivative 64 ms. What belongs to the strips
+alone is worked out once, ahead of the observers.
+"""
 
 from __future__ import annotations
 

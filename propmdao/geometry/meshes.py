@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 from typing import NamedTuple
 
 import numpy as np
@@ -52,6 +53,12 @@ def mesh_radii(
     MeshRadii
         Interpolation from the stations.
     """
+    return _mesh_radii(np.asarray(stations, float).tobytes(), n_spanwise, n_surface_span)
+
+
+@functools.lru_cache(maxsize=64)  # the stations of a design stay; splines take as long as its noise
+def _mesh_radii(station_bytes: bytes, n_spanwise: int, n_surface_span: int) -> MeshRadii:
+    stations = np.frombuffer(station_bytes)
     return MeshRadii(
         lattice=lattice_interpolation(stations, n_spanwise),
         strips=strip_interpolation(stations, n_spanwise),

@@ -20,7 +20,12 @@ from jax.typing import ArrayLike
 from propmdao.acoustics.broadband.boundary_layer import BoundaryLayer, boundary_layer
 from propmdao.acoustics.broadband.directivity import moving_radiation
 from propmdao.acoustics.broadband.section import Section
-from propmdao.acoustics.broadband.self_noise import SelfNoise, tip_noise, trailing_edge_noise
+from propmdao.acoustics.broadband.self_noise import (
+    SelfNoise,
+    edge_sources,
+    noise_of_edges,
+    tip_noise,
+)
 from propmdao.acoustics.broadband.smooth import at_least
 from propmdao.acoustics.kinematics.emission import emission_distance
 from propmdao.records.models import SelfNoiseModel
@@ -125,14 +130,14 @@ def rotor_self_noise(
             model.trip or "none",
         )
     frequency = jnp.asarray(frequency_hz, float)[:, None, None]
-    tip = tip_section(strips)
+    tip, sources = tip_section(strips), edge_sources(section, layer, air)
 
     @jax.checkpoint  # the reverse derivative recomputes one observer at a time
     def noise_at(observer: Array) -> SelfNoise:
         sight, approach, stretch = emission(strips, observer, state, n_azimuths)
         radiated = moving_radiation(*sight, approach)
         emitted = frequency * stretch  # (band, azimuth, strip)
-        edge = trailing_edge_noise(emitted, section, layer, radiated, air)
+        edge = noise_of_edges(emitted, sources, radiated)
         radiated_last = jax.tree.map(lambda q: q[..., -1], radiated)
         vortex = tip_noise(emitted[..., -1], tip, radiated_last, air, model.tip)
         # Heard for dt = stretch dtau: that is its weight in the observer's time.

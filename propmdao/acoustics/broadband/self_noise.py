@@ -24,7 +24,10 @@ from propmdao.acoustics.broadband.boundary_layer import (
 )
 from propmdao.acoustics.broadband.directivity import Radiation
 from propmdao.acoustics.broadband.section import (
+    BluntStrip,
+    LaminarStrip,
     Section,
+    TurbulentStrip,
     blunt_strip,
     laminar_strip,
     turbulent_strip,
@@ -82,6 +85,29 @@ class EdgeNoise(NamedTuple):
     bluntness: Array
 
 
+class EdgeSources(NamedTuple):
+    """Sources of the noise of trailing edges: all that knows neither frequency nor observer.
+
+    Attributes
+    ----------
+    turbulent, laminar, blunt
+        Spectra of the turbulent layers, of laminar shedding and of the blunt edge.
+    mach : array
+        Mach number of the flow over the section.
+    edge : array
+        ``M^5`` times the length of the edge [m].
+    shedding : array
+        Share of laminar vortex shedding.
+    """
+
+    turbulent: TurbulentStrip
+    laminar: LaminarStrip
+    blunt: BluntStrip
+    mach: Array
+    edge: Array
+    shedding: Array
+
+
 def third_octave_centers(lowest_hz: float = 100.0, highest_hz: float = 80e3) -> NDArray[np.float64]:
     """Exact mid-band frequencies of third octaves.
 
@@ -132,15 +158,60 @@ def trailing_edge_noise(
     At the stall the report steps; here the turbulent mechanisms change over within the next half a
     degree. Beyond it the report has no pressure and suction side.
     """
-    strip = turbulent_strip(section, layer, air)
-    laminar = laminar_strip(section, layer, air)
-    blunt = blunt_strip(section, layer)
+    return noise_of_edges(frequency_hz, edge_sources(section, layer, air), radiated)
+
+
+def edge_sources(section: Section, layer: BoundaryLayer, air: Air) -> EdgeSources:
+    """Work out what the noise of trailing edges knows before frequency and observer.
+
+    Parameters
+    ----------
+    section : Section
+        Sections of the strips and the flow over them.
+    layer : BoundaryLayer
+        Boundary layer of the strips, by `boundary_layer` or `layer_of_sections`.
+    air : Air
+        The air.
+
+    Returns
+    -------
+    EdgeSources
+        Arrays of the shape of the sections, for `noise_of_edges`.
+    """
+    mach = nonzero_speed(section.speed) / air.sound_speed
+    sources = EdgeSources(
+        turbulent_strip(section, layer, air),
+        laminar_strip(section, layer, air),
+        blunt_strip(section, layer),
+        mach,
+        mach**5 * section.span,
+        layer.shedding,
+    )
     # What belongs to a strip alone is not worked out again for every frequency and observer, as
     # XLA would when it fuses all into one loop.
-    strip, laminar, blunt = jax.lax.optimization_barrier((strip, laminar, blunt))
+    apart: EdgeSources = jax.lax.optimization_barrier(sources)
+    return apart
 
-    mach = nonzero_speed(section.speed) / air.sound_speed
-    log_f, edge = jnp.log10(frequency_hz), mach**5 * section.span
+
+def noise_of_edges(frequency_hz: ArrayLike, sources: EdgeSources, radiated: Radiation) -> EdgeNoise:
+    """Third-octave mean squares of trailing edges from their sources.
+
+    Parameters
+    ----------
+    frequency_hz : array
+        Mid-band frequencies at the source, positive [Hz].
+    sources : EdgeSources
+        Those of the strips, by `edge_sources`.
+    radiated : Radiation
+        Directivity toward the observers, by `radiation`.
+
+    Returns
+    -------
+    EdgeNoise
+        Mean squares [Pa^2].
+    """
+    strip, laminar, blunt, mach, edge, shedding = sources
+    log_f = jnp.log10(frequency_hz)
     attached = (1 - strip.stalled) * edge * radiated.high
     separated = strip.stalled * edge * radiated.low
     a_p = turbulent_spectra.SHAPE_A.level(log_f + strip.log_st_p, strip.a_r)
@@ -153,7 +224,7 @@ def trailing_edge_noise(
     g5 = shedding_spectra.blunt_shape(
         log_f + blunt.log_strouhal, blunt.wedge, blunt.plate, blunt.edge_degrees
     )
-    shed = layer.shedding * _power(g1 + laminar.level)
+    shed = shedding * _power(g1 + laminar.level)
     return EdgeNoise(
         pressure_side=attached * _power(a_p + strip.level_p),  # 25
         suction_side=attached * _power(a_s + strip.level_s),  # 26

@@ -8,7 +8,7 @@ and a polynomial through a few rings tells it for all sources::
     sum_j q_j exp(-1j n theta_j) f_n(r_j, z_j) = sum_k w_nk f_n(r_k, z_k)
     w_nk = sum_j q_j exp(-1j n theta_j) L_k(r_j, z_j)
 
-with Lagrange's polynomials L_k. The weights ask for no observer and no time. 84 rings stand for
+with Lagrange's polynomials L_k. The weights ask for no observer and no time. 98 rings stand for
 5,200 panels, at any shape of the blade, since what is interpolated is the field and not the blade.
 """
 
@@ -78,7 +78,7 @@ def rings_needed(highest_order: int) -> tuple[int, int]:
     Over the radius the field is like r^n in the limit of a slow rotor, whose Chebyshev series falls
     as exp(-k^2 / n) at the k-th term; along the shaft like exp(1j n M z / R), on a short way.
     """
-    return 5 + int(np.ceil(2.0 * np.sqrt(highest_order))), 5 + highest_order // 20
+    return 5 + int(np.ceil(2.0 * np.sqrt(highest_order))), 6 + highest_order // 16
 
 
 def gathered(kinds: Sequence[Sources], n_blades: int, n_harmonics: int) -> Rings:

@@ -44,21 +44,24 @@ def one_by_one(rotor, observers, n_harmonics):
     return jax.tree.map(lambda *q: sum(q), *every)
 
 
-def error_db(tones, reference):
-    """Largest difference of all harmonics that are within 80 dB of the loudest one."""
-    levels = []
-    for name, product in tones.parts.items():
-        expected = np.abs(np.asarray(reference[name]))
-        heard = expected > 1e-4 * expected.max(axis=1, keepdims=True)
-        levels.append(np.abs(20 * np.log10(np.abs(np.asarray(product)) / expected))[heard].max())
-    return max(levels)
-
-
 def around(radius):
-    """Observers near and far, on both sides of the rotor's plane and in it."""
-    return np.concatenate(
-        [arc(r, ON_BOTH_SIDES) for r in (1.5 * radius, 14.0 * radius, 1e3 * radius)]
-    )
+    """Observers at 1.5 tip radii, at 14 and far away, in the rotor's plane and on both sides."""
+    return np.concatenate([arc(r * radius, ON_BOTH_SIDES) for r in (1.5, 14.0, 1e3)])
+
+
+def assert_sum_of_each(rotor, places):
+    """Compare all harmonics within 80 dB of the loudest one of their observer.
+
+    Near the tip the azimuths of the Fourier integral leave 0.01 dB.
+    """
+    reference = one_by_one(rotor, places, 10)
+    for name, product in rotor.tones(places).parts.items():
+        expected = np.abs(np.asarray(reference[name]))
+        audible = expected > 1e-4 * expected.max(axis=1, keepdims=True)
+        error_db = 20 * np.abs(np.log10(np.abs(np.asarray(product)) / expected))
+        error_db = np.where(audible, error_db, 0.0)
+        assert error_db[:3].max() < 0.01
+        assert error_db[3:].max() < 1e-3
 
 
 @pytest.mark.parametrize(
@@ -71,8 +74,7 @@ def test_all_sources_are_the_sum_of_each(slow_flyer, name, tip_mach, advance):
     radius, tip_speed = 0.5 * propeller.diameter, 340.0 * tip_mach
     rotor = slow_flyer.with_(rotation_speed=tip_speed / radius, speed=advance * tip_speed)
     rotor = with_blade(rotor, Blade.from_propeller(propeller), propeller.r_over_R)
-    places = around(radius)
-    assert error_db(rotor.tones(places), one_by_one(rotor, places, 10)) < 2e-3
+    assert_sum_of_each(rotor, around(radius))
 
 
 def test_six_blades_with_sweep_and_rake(slow_flyer):
@@ -82,8 +84,7 @@ def test_six_blades_with_sweep_and_rake(slow_flyer):
     bent = dataclasses.replace(blade, sweep_over_R=0.4 * x**3, rake_over_R=0.2 * x**2)
     rotor = slow_flyer.with_(n_blades=6, rotation_speed=0.7 * 340.0 / 0.1397, speed=60.0)
     rotor = with_blade(rotor, bent, x)
-    places = around(0.1397)
-    assert error_db(rotor.tones(places), one_by_one(rotor, places, 10)) < 2e-3
+    assert_sum_of_each(rotor, around(0.1397))
 
 
 def test_sources_without_strength_make_no_difference(slow_flyer):
@@ -127,7 +128,6 @@ def test_catalogue_from_hover_to_windmill(slow_flyer, name):
     """The default surface, slow and fast, near and far."""
     propeller = load_propeller(name)
     radius, blade = 0.5 * propeller.diameter, Blade.from_propeller(propeller)
-    places = around(radius)
     for tip_mach, advance in ((0.2, 0.0), (0.2, 0.5), (0.6, 0.2)):
         rotor = slow_flyer.with_(
             n_blades=propeller.n_blades,
@@ -135,4 +135,4 @@ def test_catalogue_from_hover_to_windmill(slow_flyer, name):
             speed=advance * tip_mach * 340.0,
         )
         rotor = with_blade(rotor, blade, propeller.r_over_R, mesh=(65, 80))
-        assert error_db(rotor.tones(places), one_by_one(rotor, places, 10)) < 2e-3
+        assert_sum_of_each(rotor, around(radius))
