@@ -28,8 +28,9 @@ install: $(VENV)/installed
 study: $(VENV)/installed
 	$(BIN)/python studies/design/low_noise_design.py
 
+# Each process gets one half of the tests and the rest of the other's: neighbours share what is compiled.
 test: $(VENV)/dev
-	$(BIN)/python -m pytest -m "not slow" -n 2
+	$(BIN)/python -m pytest -m "not slow" -n 2 --dist worksteal
 
 # Reference data that stands beside the checkout is found without being named.
 ifneq ($(wildcard ../shared/data),)

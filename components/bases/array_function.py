@@ -116,7 +116,7 @@ def _push(
     return jax.jvp(_chosen(function, static, outputs, constants), (inputs,), (seeds,))[1]
 
 
-@partial(compiled, static_argnums=(0, 1, 2))
+@partial(compiled, static_argnums=(0, 1, 2), optimisation=1)
 def _linearise(
     function: Function,
     static: Hashable,
@@ -127,7 +127,7 @@ def _linearise(
     return jax.vjp(_chosen(function, static, outputs, constants), inputs)[1]
 
 
-@compiled
+@partial(compiled, optimisation=1)
 def _pull_back(pull: Any, seeds: Arrays) -> Arrays:
     products: Arrays = pull(seeds)[0]
     return products
