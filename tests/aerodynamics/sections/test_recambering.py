@@ -129,7 +129,8 @@ def test_lift_of_the_strips_is_that_of_their_polars_where_these_are_straight(slo
     cl, cd, _ = curve_coefficients(curves, states.angle_of_attack)
     outer = slice(4, 9)
     np.testing.assert_allclose(states.lift_coefficient[outer], cl[outer], atol=0.05)
-    np.testing.assert_allclose(states.drag_coefficient, cd, rtol=1e-12)
+    # The loads are those on a straight line between the last two trials of the search.
+    np.testing.assert_allclose(states.drag_coefficient, cd, rtol=1e-9)
 
 
 @pytest.mark.parametrize("guess", [0.0, 0.3, 3.0, 12.0])
