@@ -11,7 +11,7 @@ flow is smooth. So it is taken in three parts:
 
 On the default lattice, 8 x 24 panels and six turns of two blades, a tenth of the pairs of segments
 and points is left, 0.24 of 2.25 million. Over the catalogue, from hover to windmilling, thrust and
-torque change by 0.02 % at most (tests/validation/test_steady_wake.py).
+torque change by less than 0.05 % (tests/validation/test_steady_wake.py).
 """
 
 from __future__ import annotations
