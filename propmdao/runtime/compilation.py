@@ -15,7 +15,7 @@ import jax.extend.core
 import numpy as np
 
 import propmdao.runtime.jax_setup  # noqa: F401 - before any array is made
-from propmdao.runtime.kept_programs import are_kept, kept_program, kind_of
+from propmdao.runtime.kept_programs import are_kept, drop_program, kept_program, kind_of
 
 _Parameters = ParamSpec("_Parameters")
 _Result = TypeVar("_Result")
@@ -98,7 +98,10 @@ def compiled(
                 call, parts.fixed, parts.moving, lambda: alone().lower(*by_place, **by_name)
             )
             if program is not None:
-                return program(*parts.by_place, **parts.by_name)
+                try:
+                    return program(*parts.by_place, **parts.by_name)
+                except jax.errors.JaxRuntimeError:  # an error of its own comes again below
+                    drop_program(call, parts.fixed, parts.moving)
         return alone()(*by_place, **by_name)
 
     def lower(*args: Any) -> Any:

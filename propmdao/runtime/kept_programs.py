@@ -25,7 +25,7 @@ from collections.abc import Callable, Hashable
 from contextlib import suppress
 from functools import cache
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import jax
 import numpy as np
@@ -45,7 +45,7 @@ _SETTINGS = ("JAX_", "XLA_", "PJRT_")
 _PROCESSOR = ("model name", "flags", "Features", "CPU implementer", "CPU part")
 
 _programs: dict[Hashable, Compiled | None] = {}
-_read = threading.local()
+_written = threading.local()
 
 
 class _NamelessError(Exception):
@@ -88,29 +88,69 @@ def kept_program(
         To be called with `arguments`; None where the program cannot be told from others by names,
         and none is kept.
     """
-    leaves, tree = jax.tree.flatten(arguments)
-    kinds = tuple(map(kind_of, leaves))
-    key = function, fixed, tree, kinds
+    key = _key(function, fixed, arguments)
     try:
         return _programs[key]
     except KeyError:
         pass
     try:
-        named = [_name(function), *map(_name, fixed), str(tree)]
-        if " at 0x" in named[-1] or None in kinds:
-            raise _NamelessError
+        file = _file_of(key)
     except _NamelessError:
         return _programs.setdefault(key, None)
-    file = _file(repr((named, kinds)).encode())
-    program = file and _loaded(file, tree)
+    program = file and _loaded(file, key.tree)
     if not program:
         lowered = lower()
-        n_read = _n_read_from_jaxs_cache()
+        n_written = _n_written_by_jax()
         program = lowered.compile()
-        # What JAX has read from its cache it cannot write down again: functions would be missing.
-        if file and n_read == _n_read_from_jaxs_cache():
+        # What JAX has read from its cache, now or for another function of this process, it cannot
+        # write down again: functions would be missing. What it compiles anew it writes there.
+        if file and n_written < _n_written_by_jax():
             _keep(file, program)
     return _programs.setdefault(key, program)
+
+
+def drop_program(
+    function: Callable[..., Any],
+    fixed: tuple[Hashable, ...],
+    arguments: tuple[tuple[Any, ...], dict[str, Any]],
+) -> None:
+    """Take away a program that does not run, from memory and disk; none is kept in its place.
+
+    Parameters
+    ----------
+    function, fixed, arguments
+        Those that `kept_program` has found it by.
+    """
+    key = _key(function, fixed, arguments)
+    _programs[key] = None
+    if file := _file_of(key):
+        file.unlink(missing_ok=True)
+
+
+class _Key(NamedTuple):
+    """What a program is found by in this process."""
+
+    function: Callable[..., Any]
+    fixed: tuple[Hashable, ...]
+    tree: Any
+    kinds: tuple[Hashable, ...]
+
+
+def _key(
+    function: Callable[..., Any],
+    fixed: tuple[Hashable, ...],
+    arguments: tuple[tuple[Any, ...], dict[str, Any]],
+) -> _Key:
+    leaves, tree = jax.tree.flatten(arguments)
+    return _Key(function, fixed, tree, tuple(map(kind_of, leaves)))
+
+
+def _file_of(key: _Key) -> Path | None:
+    """File of a program; None where nothing can be kept, an error where it has no name."""
+    named = [_name(key.function), *map(_name, key.fixed), str(key.tree)]
+    if " at 0x" in named[-1] or None in key.kinds:
+        raise _NamelessError
+    return _file(repr((named, key.kinds)).encode())
 
 
 def kind_of(leaf: Any) -> Hashable:
@@ -214,16 +254,16 @@ def _keep(file: Path, program: Compiled) -> None:
         new.write_bytes(hashlib.sha256(packed).digest() + packed)
 
 
-def _n_read_from_jaxs_cache() -> int:
-    """Number of programs that this thread has had from JAX's cache."""
-    _count_what_is_read()
-    return getattr(_read, "number", 0)
+def _n_written_by_jax() -> int:
+    """Number of programs that this thread has compiled and JAX has put into its cache."""
+    _count_what_is_written()
+    return getattr(_written, "number", 0)
 
 
 @cache
-def _count_what_is_read() -> None:
+def _count_what_is_written() -> None:
     def count(event: str, **_: Any) -> None:
-        if event == "/jax/compilation_cache/cache_hits":
-            _read.number = getattr(_read, "number", 0) + 1
+        if event == "/jax/compilation_cache/cache_misses":
+            _written.number = getattr(_written, "number", 0) + 1
 
     jax.monitoring.register_event_listener(count)
