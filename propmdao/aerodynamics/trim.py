@@ -20,7 +20,7 @@ from propmdao.runtime.compilation import compiled
 
 # Of the product of the last two steps, relative to the rotation speed squared: the results at the
 # root lie on the straight line through the last two trials, to less than that.
-_TOLERANCE = 1.0e-10
+_TOLERANCE = 1.0e-13
 _ROUGH_TOLERANCE = 1.0e-4
 _ROUNDING = 1.0e-13
 _MAX_EVALUATIONS = 60

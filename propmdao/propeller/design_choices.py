@@ -7,13 +7,15 @@ these tables. Nothing here is slow to import.
 from __future__ import annotations
 
 import dataclasses
-
-import numpy as np
-import numpy.typing as npt
+from typing import TYPE_CHECKING
 
 from propmdao.records.units import Range
 
-Floats = npt.NDArray[np.float64]
+if TYPE_CHECKING:  # help of the command line comes from here, and does without NumPy
+    import numpy as np
+    import numpy.typing as npt
+
+    Floats = npt.NDArray[np.float64]
 
 
 @dataclasses.dataclass(frozen=True)
@@ -60,6 +62,8 @@ class Free:
             Lowest and highest change at the control points; no change is always between them, even
             where the described blade is outside of what the polars know.
         """
+        import numpy as np
+
         lower, upper = (np.full(here.size, end) for end in range_)
         if self.within is not None:
             lowest, highest = self.within
@@ -83,6 +87,8 @@ def control_radii(root_r_over_R: float, n_control: int) -> Floats:
     (n_control,) array
         r/R.
     """
+    import numpy as np
+
     return np.linspace(root_r_over_R, 1.0, n_control)
 
 

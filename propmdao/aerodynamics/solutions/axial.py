@@ -60,7 +60,7 @@ __all__ = [
     "solve",
 ]
 
-_TOLERANCE = 1.0e-9  # relative, in the induced velocity
+_TOLERANCE = 1.0e-12  # relative, in the induced velocity
 _ROUGH_TOLERANCE = 1.0e-3
 _GUESS = 0.05  # of the tip speed
 _STEEPEST, _FLATTEST = -5.0, -1.0  # slopes that a guess may have

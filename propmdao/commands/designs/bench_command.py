@@ -11,7 +11,6 @@ from typing import Any
 from propmdao.commands.options import add_asked, add_command, add_propeller, asked_of, number
 from propmdao.commands.output.output_files import require_output
 from propmdao.commands.output.warning_lines import warning_lines
-from propmdao.records.listening import DISTANCE
 from propmdao.records.units import Range
 from propmdao.runtime.terminal import print_line
 
@@ -79,6 +78,8 @@ def add_bench(commands: argparse._SubParsersAction[Any]) -> None:
 
 
 def _bench(options: argparse.Namespace) -> None:
+    from propmdao.records.listening import DISTANCE  # imports NumPy, which help does without
+
     _PORT.require("--port", options.port)
     if options.save is not None:
         require_output("--save", options.save, ".toml")
