@@ -3,7 +3,7 @@
 The candidates of a differential evolution, blade to trimmed loads to tones, by the driver's
 option `designs_at_once`. It is what an accelerator asks for: where there is one JAX takes it by
 itself, and `python benchmarks/population.py` prints the same without pytest. On two cores 8 at once
-were 1.3 times as fast as one after the other, 64 slower, for they leave the caches; two processes
+are no faster than one after the other, and 16 slower, for they leave the caches; two processes
 (`n_workers`) are faster than any of them (`test_bench_workers.py`).
 """
 
