@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from functools import partial
-from typing import Any, NamedTuple, Protocol
+from typing import Any, Protocol
 
 import jax
 import jax.numpy as jnp
@@ -13,7 +12,8 @@ from jax import Array
 
 from propmdao.aerodynamics.solutions.case import RotorCase
 from propmdao.aerodynamics.solutions.result import RotorLoads, TiltedLoads
-from propmdao.aerodynamics.solutions.roots import at_root, empty
+from propmdao.aerodynamics.solutions.roots import at_root
+from propmdao.aerodynamics.thrust_search import Bounds, Start, searched
 from propmdao.records.pytrees import Scalar, record
 from propmdao.records.units import RAD_PER_S
 from propmdao.runtime.compilation import compiled
@@ -22,9 +22,6 @@ from propmdao.runtime.compilation import compiled
 # root lie on the straight line through the last two trials, to less than that.
 _TOLERANCE = 1.0e-13
 _ROUGH_TOLERANCE = 1.0e-4
-_ROUNDING = 1.0e-13
-_MAX_EVALUATIONS = 60
-_NEARBY = 1.02  # of the rotation speed: the second point of a straight line
 
 # Tip speeds between which a rotation speed is looked for where nobody bounds it [m/s]: that of the
 # rotation at least, a hundredth of the speed of sound, and that of the air at most, nine tenths.
@@ -56,20 +53,6 @@ class Solver(Protocol):
         self, flow: Any, thrust_required: Scalar, rotation_speed: Scalar, results: Any
     ) -> RotorLoads | TiltedLoads:
         """Return the loads from the second thing that `evaluate` returned."""
-
-
-@record
-class Bounds:
-    """Rotation speeds between which the one that gives a thrust is looked for.
-
-    Attributes
-    ----------
-    low, high : scalar
-        Lowest and highest rotation speed of the search [rad/s].
-    """
-
-    low: Scalar
-    high: Scalar
 
 
 @record
@@ -282,125 +265,11 @@ def solve_for_thrust(
             return solver.rough(flow, required, rotation_speed), ()
 
         middle = jnp.sqrt(bounds.low * bounds.high)
-        begun = _search(rough, required, bounds, _Start(middle), _ROUGH_TOLERANCE)
-        end = _search(trial, required, bounds, _Start(begun.trial, begun.slope), _TOLERANCE)
+        begun = searched(rough, required, bounds, Start(middle), _ROUGH_TOLERANCE)
+        end = searched(trial, required, bounds, Start(begun.trial, begun.slope), _TOLERANCE)
         return end.trial, end.results, end.reached.astype(float)
 
     params = flow, jnp.asarray(thrust_required, float), bounds
     rotation_speed, (_, results), reached = at_root(search, evaluate, missing, params)
     loads = solver.solution(flow, params[1], rotation_speed, results)
     return Trimmed(rotation_speed, reached > 0.5, loads)
-
-
-class _Start(NamedTuple):
-    """Where a search begins, and how the thrust rises with the rotation speed there."""
-
-    rotation_speed: Array
-    slope: Array | None = None  # None: the thrust rises as the rotation speed squared
-
-
-class _Search(NamedTuple):
-    """State of a search."""
-
-    n_trials: Array | int
-    low: Array
-    high: Array
-    ends_tried: tuple[Array, Array]
-    trial: Array
-    last_trial: Array
-    last_thrust: Array
-    slope: Array  # through the last two trials
-    results: Any
-    reached: Array
-    done: Array
-
-
-def _search(
-    thrust_at: Callable[[Array], tuple[Array, Any]],
-    required: Array,
-    bounds: Bounds,
-    start: _Start,
-    tolerance: float,
-) -> _Search:
-    """Rotation speed for a thrust, and the results on the straight line there.
-
-    The next trial comes from CT, which is nearly a straight line in J, drawn through the last two
-    trials. Where that leaves the bracket, the bracket is halved. A bound is tried only where a
-    trial would lie beyond it; where the thrust lies beyond it, too, the search ends there.
-    """
-    bottom, top = jnp.asarray(bounds.low), jnp.asarray(bounds.high)
-
-    def unfinished(state: _Search) -> Array:
-        return (state.n_trials < _MAX_EVALUATIONS) & ~state.done
-
-    def step(state: _Search) -> _Search:
-        x, first = state.trial, state.n_trials == 0
-        thrust, results = thrust_at(x)
-        last = jnp.where(first, _NEARBY * x, state.last_trial)
-        if start.slope is None:
-            rise = (_NEARBY**2 - 1.0) * jnp.maximum(jnp.abs(thrust), jnp.abs(required))
-        else:
-            rise = (_NEARBY - 1.0) * x * start.slope
-        last_thrust = jnp.where(first, thrust + rise, state.last_thrust)
-        enough = ~(thrust <= required)
-        low, high = jnp.where(enough, state.low, x), jnp.where(enough, x, state.high)
-        ends_tried = state.ends_tried[0] | (x == bottom), state.ends_tried[1] | (x == top)
-        out_of_reach = (enough & (x == bottom)) | ((thrust < required) & (x == top))
-
-        wanted = _where_linear_ct_gives(required, x, thrust, last, last_thrust)
-        # At the root rounding may put the next trial to the wrong side.
-        inside = ((wanted > low) & (wanted < high)) | (jnp.abs(wanted - x) < _ROUNDING * x)
-        end = jnp.where(wanted < x, low, high)
-        untried = jnp.where(wanted < x, ~ends_tried[0], ~ends_tried[1])
-        is_bound = jnp.where(wanted < x, low == bottom, high == top) & jnp.isfinite(wanted)
-        otherwise = jnp.where(is_bound & untried, end, 0.5 * (low + high))
-        following = jnp.where(inside, wanted, otherwise)
-        # A secant step leaves an error of about the product of the last two.
-        product = jnp.abs((following - x) * (x - last))
-        close = inside & ~first & (product <= tolerance * following**2)
-        reached = close | (thrust == required)
-        following = jnp.where(thrust == required, x, following)
-        share = (following - x) / (x - last)
-        results = jax.tree.map(
-            lambda at, then: jnp.where(close, at + share * (at - then), at), results, state.results
-        )
-        return _Search(
-            n_trials=state.n_trials + 1,
-            low=low,
-            high=high,
-            ends_tried=ends_tried,
-            trial=following,
-            last_trial=x,
-            last_thrust=thrust,
-            slope=(thrust - last_thrust) / (x - last),
-            results=results,
-            reached=reached,
-            done=reached | out_of_reach,
-        )
-
-    trial = jnp.clip(start.rotation_speed, bottom, top)
-    zero, no = jnp.zeros_like(trial), jnp.full_like(trial, False, bool)
-    begin = _Search(
-        n_trials=0,
-        low=bottom,
-        high=top,
-        ends_tried=(no, no),
-        trial=trial,
-        last_trial=zero,
-        last_thrust=zero,
-        slope=zero,
-        results=empty(thrust_at, trial)[1],
-        reached=no,
-        done=no,
-    )
-    return jax.lax.while_loop(unfinished, step, begin)
-
-
-def _where_linear_ct_gives(thrust: Scalar, x1: Array, t1: Array, x2: Array, t2: Array) -> Array:
-    """Rotation speed for a thrust when T / Omega^2 = a + b / Omega holds through two points."""
-    u1, u2 = 1.0 / x1, 1.0 / x2
-    c1, c2 = t1 * u1**2, t2 * u2**2
-    b = (c1 - c2) / (u1 - u2)
-    a = c1 - b * u1
-    # T u^2 = a + b u, in the form that also holds for T = 0.
-    return (-b + jnp.sqrt(b * b + 4.0 * thrust * a)) / (2.0 * a)
