@@ -142,7 +142,7 @@ def from_coarse(values: Array, n_spanwise: int) -> Array:
         Values at the points of `ChordLines`.
     """
     number, kept = np.arange(n_spanwise), every_second(n_spanwise)
-    place = np.cos(np.pi * (np.arange(LINE_POINTS) + 0.5) / LINE_POINTS)
+    place = _chebyshev()
     coarse = values.reshape(*values.shape[:-1], -1, kept.size)
     along, across = _polynomial(place[::2], place), through_nearest(kept, number)
     fine = jnp.einsum("im,...ms,ts->...it", jnp.asarray(along), coarse, jnp.asarray(across))
@@ -158,8 +158,13 @@ def _fractions(n_chordwise: int) -> np.ndarray:
     """Chebyshev points between the first quarter point and the last collocation point."""
     quarter, three_quarter = panel_fractions(n_chordwise)
     first, last = quarter[0], three_quarter[-1]
-    angle = np.pi * (np.arange(LINE_POINTS) + 0.5) / LINE_POINTS
-    return 0.5 * (first + last) - 0.5 * (last - first) * np.cos(angle)
+    return 0.5 * (first + last) - 0.5 * (last - first) * _chebyshev()
+
+
+def _chebyshev() -> np.ndarray:
+    """Chebyshev points from 1 down to -1, ends left out, as many as a strip has."""
+    cosine: np.ndarray = np.cos(np.pi * (np.arange(LINE_POINTS) + 0.5) / LINE_POINTS)
+    return cosine
 
 
 def _reading(n_chordwise: int, fractions: np.ndarray) -> Array:
