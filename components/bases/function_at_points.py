@@ -3,10 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Hashable, Iterable, Mapping, Sequence
-from operator import itemgetter
 from typing import Any
 
-import jax
 import numpy as np
 import openmdao.api as om
 
@@ -20,7 +18,7 @@ from propmdao.components.bases.array_function import (
 from propmdao.components.bases.refusals import require_numbers
 from propmdao.runtime.compilation import memory_of
 from propmdao.runtime.finite import Axis
-from propmdao.runtime.side_by_side import side_by_side, stacked
+from propmdao.runtime.side_by_side import side_by_side, stacked, taken_apart
 
 
 class FunctionAtPoints(om.ExplicitComponent):
@@ -141,8 +139,7 @@ class FunctionAtPoints(om.ExplicitComponent):
             return side_by_side(self.found_at, points)
         function, constants = self.evaluated()
         inputs = stacked(points, batch_size)
-        values = jax.device_get(evaluate_all(function, self.static, constants, inputs))
-        return (jax.tree.map(itemgetter(place), values) for place in range(len(points)))
+        return taken_apart(evaluate_all(function, self.static, constants, inputs), len(points))
 
     def batch_memory(self, batch_size: int) -> int:
         """Memory that `evaluate_designs` takes on each device, by the code that is compiled for it.

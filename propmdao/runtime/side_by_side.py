@@ -6,6 +6,7 @@ import os
 from collections.abc import Callable, Iterable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from functools import cache
+from operator import itemgetter
 from typing import Any, TypeVar
 
 import jax
@@ -123,6 +124,25 @@ def stacked(points: Sequence[Any], size: int) -> Any:
     if _mesh().size == 1:
         return together
     return jax.device_put(together, NamedSharding(_mesh(), _POINTS))
+
+
+def taken_apart(together: Any, n_points: int) -> list[Any]:
+    """Take records of several points apart, those of `stacked` or of what came of them.
+
+    Parameters
+    ----------
+    together : pytree of arrays
+        Arrays with a leading axis of points.
+    n_points : int
+        Points that are wanted; what fills the axis up behind them is left out.
+
+    Returns
+    -------
+    list of pytrees
+        NumPy's arrays and numbers of each point.
+    """
+    values = jax.device_get(together)
+    return [jax.tree.map(itemgetter(place), values) for place in range(n_points)]
 
 
 def filled_size(size: int) -> int:

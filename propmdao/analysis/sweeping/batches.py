@@ -5,10 +5,7 @@ from __future__ import annotations
 import dataclasses
 from collections.abc import Iterator, Mapping, Sequence
 from functools import partial
-from operator import itemgetter
 from typing import Any, NamedTuple
-
-import jax
 
 from propmdao.acoustics.kinematics.limits import require_subsonic_tip
 from propmdao.aerodynamics.calls import points_in_a_call
@@ -37,7 +34,7 @@ from propmdao.propeller.description import Propeller
 from propmdao.records.models import Model
 from propmdao.records.states import OperatingPoint, RotorState
 from propmdao.runtime.compilation import compiled
-from propmdao.runtime.side_by_side import at_all, n_cores, side_by_side, stacked
+from propmdao.runtime.side_by_side import at_all, n_cores, side_by_side, stacked, taken_apart
 
 _SHORT_POINTS = 8  # in axial flight, that a core has in a row
 
@@ -200,7 +197,7 @@ def _at_rpm(batch: _Batch, points: Sequence[OperatingPoint]) -> list[Solved | Ex
     held, radius = batch.held, float(batch.held.rotor.radius)
     states = [point.at(point.rotation_speed or 0.0) for point in points]
     case = held.case(points[0])
-    loads = _each(_solve_all(batch.solver, case, stacked(states, batch.size)), len(points))
+    loads = taken_apart(_solve_all(batch.solver, case, stacked(states, batch.size)), len(points))
 
     def solved(point: OperatingPoint, state: RotorState, loads: RotorLoads) -> Solved:
         require_subsonic_tip(radius, state)
@@ -226,7 +223,7 @@ def _at_thrust(batch: _Batch, points: Sequence[OperatingPoint]) -> list[Solved |
         require_reached(trimmed, batch.solver, case, point.thrust or 0.0, within)
         return held.solved(case, trimmed.loads, point.at(float(trimmed.rotation_speed)))
 
-    every = zip(points, bounds, _each(every_trim, len(points)), strict=True)
+    every = zip(points, bounds, taken_apart(every_trim, len(points)), strict=True)
     return [outcome_of(solved, *of_point).result for of_point in every]
 
 
@@ -236,12 +233,6 @@ class _Search(NamedTuple):
     state: RotorState
     thrust: float
     bounds: Bounds
-
-
-def _each(together: Any, n_points: int) -> list[Any]:
-    """Records of a pytree of arrays with a leading axis."""
-    values = jax.device_get(together)
-    return [jax.tree.map(itemgetter(place), values) for place in range(n_points)]
 
 
 @partial(compiled, static_argnames="solver")
