@@ -13,7 +13,7 @@ from jax import Array
 
 from propmdao.acoustics.broadband.self_noise import SelfNoise
 from propmdao.acoustics.kinematics.observers import directions
-from propmdao.acoustics.levels.bands import band_number, tones_in_bands
+from propmdao.acoustics.levels.bands import band_number, middle_hz, tones_in_bands
 from propmdao.acoustics.levels.decibels import (
     SILENCE_DB,
     level_db,
@@ -278,19 +278,14 @@ class _Levels(NamedTuple):
         held, first = np.unique(np.asarray(self.band)[turning], return_index=True)
         of_tones = np.asarray(self.in_band)[:, turning][:, first]
         if self.noise is None:
-            return _middle_hz(held), of_tones
+            return middle_hz(held), of_tones
         of_noise = np.round(10.0 * np.log10(BANDS_HZ / 1000.0))
         both = np.concatenate([of_noise, held])
         numbers = np.arange(both.min(), both.max() + 1.0)
         level = np.full((len(of_tones), numbers.size), SILENCE_DB)
         level[:, (held - numbers[0]).astype(int)] = of_tones
         level[:, (of_noise - numbers[0]).astype(int)] = self.noise.bands_with_tones
-        return _middle_hz(numbers), level
-
-
-def _middle_hz(band: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
-    """Mid-band frequencies of third octaves by number."""
-    return np.asarray(1000.0 * 10.0 ** (band / 10.0))
+        return middle_hz(numbers), level
 
 
 @compiled

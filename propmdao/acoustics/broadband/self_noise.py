@@ -33,6 +33,7 @@ from propmdao.acoustics.broadband.section import (
     turbulent_strip,
 )
 from propmdao.acoustics.broadband.smooth import ramp
+from propmdao.acoustics.levels.bands import middle_hz
 from propmdao.acoustics.levels.decibels import REFERENCE_PRESSURE
 from propmdao.records.air import Air
 from propmdao.records.models import Tip
@@ -122,8 +123,7 @@ def third_octave_centers(lowest_hz: float = 100.0, highest_hz: float = 80e3) -> 
         Frequencies ``1000 * 10**(k/10)`` [Hz].
     """
     first, last = (round(10 * np.log10(f / 1000)) for f in (lowest_hz, highest_hz))
-    centers: NDArray[np.float64] = 1000 * 10 ** (np.arange(first, last + 1) / 10)
-    return centers
+    return middle_hz(np.arange(first, last + 1))
 
 
 def trailing_edge_noise(

@@ -101,7 +101,7 @@ def third_octaves_of_spectrum(
     bins = np.asarray(frequency_hz, float)
     edges = _bin_edges(bins)
     first, last = (int(k) for k in np.asarray(band_number(edges[[0, -1]])))
-    center = 1000 * 10 ** (np.arange(first, last + 1) / 10)
+    center = middle_hz(np.arange(first, last + 1))
     return center, _energy(np.asarray(mean_square, float), edges, center)
 
 
@@ -264,7 +264,7 @@ def third_octave(
     number = np.asarray(band_number(frequency[turning]))
     bands, band_of_tone = np.unique(number, return_inverse=True)
     membership = np.eye(bands.size)[band_of_tone]
-    return 1000 * 10 ** (bands / 10), np.asarray(level_db(energy[..., turning] @ membership))
+    return middle_hz(bands), np.asarray(level_db(energy[..., turning] @ membership))
 
 
 @compiled
@@ -288,3 +288,19 @@ def band_number(frequency_hz: ArrayLike) -> Array:
     """
     frequency = jax.lax.stop_gradient(jnp.asarray(frequency_hz, float))
     return jnp.floor(10 * jnp.log10(frequency / 1000) + 0.5)
+
+
+def middle_hz(number: ArrayLike) -> NDArray[np.float64]:
+    """Exact mid-band frequencies of third octaves.
+
+    Parameters
+    ----------
+    number : array
+        Band numbers, those of `band_number`.
+
+    Returns
+    -------
+    array
+        Frequencies 1000 * 10**(k/10) [Hz].
+    """
+    return np.asarray(1000.0 * 10.0 ** (np.asarray(number) / 10.0))

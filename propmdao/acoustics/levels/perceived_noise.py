@@ -13,10 +13,12 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from propmdao.acoustics.levels.bands import middle_hz
+
 Floats = NDArray[np.float64]
 
 #: Exact mid-band frequencies [Hz].
-PERCEIVED_BANDS_HZ: Floats = 1000 * 10 ** (np.arange(-13, 11) / 10)
+PERCEIVED_BANDS_HZ: Floats = middle_hz(np.arange(-13, 11))
 
 # Table A36-3 (Annex 16: A2-3): SPL(a), SPL(b), SPL(c), SPL(d), SPL(e) [dB]
 _CORNERS = """

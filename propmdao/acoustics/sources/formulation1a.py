@@ -14,7 +14,7 @@ from jax.typing import ArrayLike
 from propmdao.acoustics.kinematics.emission import emission_distance
 from propmdao.acoustics.signals import Tones
 from propmdao.acoustics.sources.harmonic_sums import harmonic_sums
-from propmdao.acoustics.sources.source_rings import Rings, Sources, gathered
+from propmdao.acoustics.sources.source_rings import Rings, Sources, from_shaft, gathered
 from propmdao.records.loads import PointLoads
 from propmdao.records.panels import Panels
 from propmdao.records.states import RotorState
@@ -129,10 +129,8 @@ def _panels(panels: Panels, omega: Array, v: Array) -> Sources:
 
 def _forces(loads: PointLoads) -> Sources:
     """Forces on the fluid as sources of loading noise."""
-    x, y, _ = loads.position.T
+    x, y, _ = from_shaft(loads.position)
     lx, ly, lz = loads.force.T
-    on_shaft = (x == 0.0) & (y == 0.0)  # where the radius is along x
-    x, y = jnp.where(on_shaft, 1.0, x), jnp.where(on_shaft, 0.0, y)
     radius = jnp.sqrt(x**2 + y**2)
     radial, along = (x * lx + y * ly) / radius, (x * ly - y * lx) / radius
     return Sources(loads.position, jnp.stack([radial, along, lz]))

@@ -126,11 +126,27 @@ class _Place(NamedTuple):
 
 def _cylindrical(position: Array) -> _Place:
     """Radius, azimuth and height; sources on the shaft are at azimuth 0."""
-    x, y, z = position.T
-    on_shaft = (x == 0.0) & (y == 0.0)
-    x, y = jnp.where(on_shaft, 1.0, x), jnp.where(on_shaft, 0.0, y)
+    x, y, on_shaft = from_shaft(position)
     radius = jnp.where(on_shaft, 0.0, jnp.sqrt(x**2 + y**2))
-    return _Place(radius, jnp.arctan2(y, x), z)
+    return _Place(radius, jnp.arctan2(y, x), position[:, 2])
+
+
+def from_shaft(position: Array) -> tuple[Array, Array, Array]:
+    """Coordinates across the shaft that have a direction, with derivatives, for every source.
+
+    Parameters
+    ----------
+    position : (n, 3) array
+        Positions in the blade's frame at azimuth 0 [m].
+
+    Returns
+    -------
+    x, y, on_shaft : (n,) arrays
+        Coordinates [m], 1 and 0 for sources on the shaft, and whether a source is one of these.
+    """
+    x, y, _ = position.T
+    on_shaft = (x == 0.0) & (y == 0.0)
+    return jnp.where(on_shaft, 1.0, x), jnp.where(on_shaft, 0.0, y), on_shaft
 
 
 # Radii and heights of the rings; for each kind of sources the matrix that takes sources to rings,

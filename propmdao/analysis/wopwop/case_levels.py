@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from propmdao.acoustics.levels.bands import third_octaves_of_spectrum
+from propmdao.acoustics.levels.bands import middle_hz, third_octaves_of_spectrum
 from propmdao.acoustics.levels.decibels import level_db
 from propmdao.acoustics.levels.epnl import EffectivePerceivedNoise, effective_perceived_noise_level
 from propmdao.acoustics.levels.perceived_noise import PERCEIVED_BANDS_HZ
@@ -158,6 +158,6 @@ def case_levels(result: CaseResult) -> CaseLevels:
         grid.segment if whole else grid.step,
         frequency_hz,
         spectra,
-        1000.0 * 10.0 ** (0.1 * numbers),
+        middle_hz(numbers),
         bands,
     )

@@ -162,7 +162,8 @@ def test_printed_table_is_the_csv_rounded_and_fits_a_terminal(run: Run) -> None:
         (line,) = (line for line in table if line.startswith(f"{label} "))
         cells = {heading: text for heading, text in run.rows[label].items() if text}
         rounded = [
-            format(float(text), f"+{form}" if heading == "change" else form)
+            # No change is +0.00, whichever side of it the last digit falls on.
+            format(float(text), f"+z{form}" if heading == "change" else form)
             for heading, text in cells.items()
         ]
         assert line.removeprefix(label).split() == rounded

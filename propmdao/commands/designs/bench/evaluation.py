@@ -19,8 +19,8 @@ from propmdao.propeller.changes import Change
 from propmdao.propeller.description import Propeller
 from propmdao.records.models import Model, NoiseModel
 
-#: The two blades that are compared.
-DESCRIBED, BENT = "A", "B"
+#: The two blades that are compared, as the page names them.
+DESCRIBED, BENT = "described", "bent"
 _LEVEL = "at "  # before the key of a level at the microphone
 
 

@@ -13,7 +13,7 @@ from propmdao.analysis.request import Request
 from propmdao.analysis.results import Analysis
 from propmdao.analysis.sounds import pressure_record
 from propmdao.commands.designs.bench.design import Board, Design, History
-from propmdao.commands.designs.bench.evaluation import Evaluator, Stage
+from propmdao.commands.designs.bench.evaluation import BENT, DESCRIBED, Evaluator, Stage
 from propmdao.commands.designs.bench.latest import LatestOnly
 from propmdao.figures.pages import rotor_figures, sound_figures
 from propmdao.figures.pages.parts import Panel
@@ -22,8 +22,6 @@ from propmdao.formats.wav import FULL_SCALE, flac
 from propmdao.propeller.description import Propeller
 
 Message = dict[str, Any]
-#: The described blade and the bent one, as the page names them.
-DESCRIBED, BENT = "described", "bent"
 _SECONDS = 2.0  # of a sound, which is repeated
 
 
