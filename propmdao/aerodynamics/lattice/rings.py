@@ -139,11 +139,9 @@ def spun(vectors: Array, angle: Array) -> Array:
 
 def turned(points: Array, azimuths: np.ndarray) -> Array:
     """Copies of points (n, 3) of blade 1 on the blades at some azimuths: (n_blades, n, 3)."""
-    angle = azimuths[:, None]
-    x, y, z = points[:, 0], points[:, 1], points[:, 2]
-    cos, sin = np.cos(angle), np.sin(angle)
-    z = jnp.broadcast_to(z, (azimuths.size, z.size))
-    return jnp.stack([cos * x - sin * y, sin * x + cos * y, z], axis=-1)
+    cos, sin, none = np.cos(azimuths), np.sin(azimuths), np.zeros(azimuths.size)
+    turns = np.array([[cos, -sin, none], [sin, cos, none], [none, none, none + 1.0]])
+    return jnp.einsum("ijb,nj->bni", turns, points)
 
 
 def blade_influence(points: Array, rings: Rings, azimuths: np.ndarray, core: Scalar) -> Array:

@@ -72,7 +72,7 @@ def blade_strips(nodes: Array, rings: Rings, tip_radius: Scalar) -> Strips:
     normal = rings.normal.reshape(nc, ns, 3)
     slope = -(normal * backward).sum(-1) / (normal * upward).sum(-1)
     quarter_chord = 0.75 * leading + 0.25 * trailing
-    radius = jnp.hypot(quarter_chord[:, 0], quarter_chord[:, 1])
+    radius = jnp.sqrt(quarter_chord[:, 0] ** 2 + quarter_chord[:, 1] ** 2)
     return Strips(
         quarter_chord=quarter_chord,
         radius=radius,

@@ -15,6 +15,7 @@ not modelled.
 
 from __future__ import annotations
 
+from operator import itemgetter
 from typing import NamedTuple
 
 import jax
@@ -94,43 +95,44 @@ def attached_share(tangential_share: Array) -> Array:
     return x * x * (3.0 - 2.0 * x)
 
 
-def period_states(
-    flow: PeriodFlow, recambering: Array, laws: SectionLaws | None
-) -> tuple[SectionStates, SectionStates]:
-    """How the sections work with a given recambering.
+def unheld_period_states(flow: PeriodFlow) -> SectionStates:
+    """How the sections work without polars: with the lift of the lattice, and no drag.
 
     Parameters
     ----------
     flow : PeriodFlow
         Strips of the lattice at all azimuths.
-    recambering : (n_azimuths, ns) array
-        Recambering of each strip [rad].
-    laws : SectionLaws or None
-        Polars of the strips, with a leading axis of azimuths; None takes the lift of the lattice,
-        and no drag.
 
     Returns
     -------
+    SectionStates
+        Flow of the sections, (n_azimuths, ns) each.
+    """
+    alpha, lift = flow.angle_and_lift(jnp.zeros_like(flow.circulation))
+    zero = jnp.zeros_like(lift)
+    return SectionStates(flow.relative_speed, alpha, lift, zero, zero, zero)
+
+
+class HeldPeriod(NamedTuple):
+    """Recambering of the strips at all azimuths, and how the sections work with it.
+
+    Attributes
+    ----------
+    recambering : (n_azimuths, ns) array
+        Recambering of each strip [rad]; where the search fails, the last one tried, whose residual
+        is not 0.
     by_lattice, by_motion : SectionStates
         Flow of the sections, (n_azimuths, ns) each: with the angle of the lattice and with that of
         the motion, of which `attached` is the share of the first. The lift coefficient, what it
         borrows and the residual are those of both together.
     """
-    alpha, lift = flow.angle_and_lift(recambering)
-    zero = jnp.zeros_like(lift)
-    if laws is None:
-        states = SectionStates(flow.relative_speed, alpha, lift, zero, zero, zero)
-        return states, states
-    held, cd, borrowed, moving_cd = _held(flow, laws, alpha)
-    common = held, lift - held
 
-    def states_of(angle: Array, drag: Array) -> SectionStates:
-        return SectionStates(flow.relative_speed, angle, common[0], drag, borrowed, common[1])
-
-    return states_of(alpha, cd), states_of(flow.motion_angle, moving_cd)
+    recambering: Array
+    by_lattice: SectionStates
+    by_motion: SectionStates
 
 
-def solve_period_recambering(flow: PeriodFlow, laws: SectionLaws, start: Array) -> Array:
+def solve_period_recambering(flow: PeriodFlow, laws: SectionLaws, start: Array) -> HeldPeriod:
     """Recambering that brings lattice and polars to the same lift at every azimuth.
 
     Newton's method in pseudo-time: as if every recambering moved towards its root at the rate of a
@@ -153,9 +155,8 @@ def solve_period_recambering(flow: PeriodFlow, laws: SectionLaws, start: Array) 
 
     Returns
     -------
-    (n_azimuths, ns) array
-        Recambering of each strip [rad]; where the search fails, the last one tried, whose residual
-        is not 0.
+    HeldPeriod
+        Recambering, and the flow of the sections.
     """
     fixed_flow, fixed_laws = jax.lax.stop_gradient((flow, laws))
     shape = flow.circulation.shape
@@ -168,47 +169,96 @@ def solve_period_recambering(flow: PeriodFlow, laws: SectionLaws, start: Array) 
     def norm(missing: Array) -> Array:
         return jnp.sqrt(((weight * missing) ** 2).mean())
 
-    def at(delta: Array) -> tuple[Array, Array, Array]:
-        return delta, *_residual_and_slope(fixed_flow, fixed_laws, delta)
+    fixed_motion = _by_motion(fixed_flow, fixed_laws)
+
+    def at(delta: Array) -> _Trial:
+        alpha, lift = fixed_flow.angle_and_lift(delta)
+        # A section's lift depends on its own angle alone: one direction gives all slopes.
+        (more, _), by_alpha = jax.jvp(
+            lambda angle: _beyond_thin(fixed_laws, angle), (alpha,), (jnp.ones_like(alpha),)
+        )
+        held, _ = _held(fixed_flow, fixed_laws, alpha, more, fixed_motion)
+        return _Trial(delta, lift - held, *by_alpha)
+
+    def slope_of(trial: _Trial) -> Array:
+        return _slope(fixed_flow, fixed_laws, trial.more_by_alpha)
 
     def unfinished(state: _Newton) -> Array:
-        largest = jnp.abs(weight * state.missing).max()
+        largest = jnp.abs(weight * state.trial.missing).max()
         attempts_left = state.n_trials < _MAX_STEPS * len(_FIRST_TIMES)
         return attempts_left & ~(largest <= _TOLERANCE)
 
     def step(state: _Newton) -> _Newton:
+        last = state.trial
         inertia = 2.0 * jnp.pi / state.time * jnp.diag(fixed_flow.attached.ravel())
-        change = linear_algebra.solve(state.slope + inertia, state.missing.ravel()).reshape(shape)
+        change = linear_algebra.solve(state.slope + inertia, last.missing.ravel()).reshape(shape)
         # Each strip by itself: one that has just stalled holds up no other.
-        delta = state.recambering - jnp.clip(change, -longest, longest)
+        delta = last.recambering - jnp.clip(change, -longest, longest)
         following = state.n_trials + 1
         attempt = following // _MAX_STEPS
         afresh = following % _MAX_STEPS == 0
-        delta, missing, slope = at(jnp.where(afresh, 0.0, delta))
-        fall = norm(state.missing) / norm(missing)
+        trial = at(jnp.where(afresh, 0.0, delta))
+        fall = norm(last.missing) / norm(trial.missing)
         time = state.time * jnp.where(fall > 1.0, fall, jnp.maximum(fall**_FALL, _LEAST_FALL))
         time = jnp.where(afresh, jnp.asarray(_FIRST_TIMES)[attempt], time)
-        return _Newton(following, delta, missing, slope, time)
+        return _Newton(following, trial, slope_of(trial), time)
 
-    none = jnp.zeros(shape)
-    begin = at(jax.lax.stop_gradient(start))
+    # Mapped, so that the polars are compiled once for both.
+    both = jax.lax.map(at, jnp.stack([jnp.zeros(shape), jax.lax.stop_gradient(start)]))
+    at_none, begin = (jax.tree.map(itemgetter(k), both) for k in range(2))
     # What is near the root already moves on as if it had begun at no recambering.
-    time = _FIRST_TIMES[0] * norm(_residual(fixed_flow, fixed_laws, none)) / norm(begin[1])
-    end = jax.lax.while_loop(unfinished, step, _Newton(0, *begin, time))
+    time = _FIRST_TIMES[0] * norm(at_none.missing) / norm(begin.missing)
+    end = jax.lax.while_loop(unfinished, step, _Newton(0, begin, slope_of(begin), time))
+    last, slope = jax.lax.stop_gradient((end.trial, end.slope))
     # One more Newton step, in which alone the arguments count: its slope is that of the solution.
-    delta, slope = jax.lax.stop_gradient((end.recambering, end.slope))
-    missing = _residual(flow, laws, delta)
-    return delta - linear_algebra.solve(slope, missing.ravel()).reshape(shape)
+    # It is so short that the polars are straight along it.
+    before, lift = flow.angle_and_lift(last.recambering)
+    more, cd = _beyond_thin(laws, before)
+    motion = _by_motion(flow, laws)
+    missing = lift - _held(flow, laws, before, more, motion)[0]
+    newton = -linear_algebra.solve(slope, missing.ravel()).reshape(shape)
+    recambering = last.recambering + jnp.where(unfinished(end), 0.0, newton)
+    alpha, lift = flow.angle_and_lift(recambering)
+    more, cd = (
+        more + last.more_by_alpha * (alpha - before),
+        cd + last.cd_by_alpha * (alpha - before),
+    )
+    held, borrowed = _held(flow, laws, alpha, more, motion)
+
+    def states_of(angle: Array, drag: Array) -> SectionStates:
+        return SectionStates(flow.relative_speed, angle, held, drag, borrowed, lift - held)
+
+    return HeldPeriod(recambering, states_of(alpha, cd), states_of(flow.motion_angle, motion.drag))
+
+
+class _Trial(NamedTuple):
+    """Recambering that is tried, the lift missing to the polars, and slopes of these."""
+
+    recambering: Array
+    missing: Array
+    more_by_alpha: Array
+    cd_by_alpha: Array
 
 
 class _Newton(NamedTuple):
     """State of Newton's method."""
 
     n_trials: Array | int
-    recambering: Array
-    missing: Array
+    trial: _Trial
     slope: Array
     time: Array
+
+
+class _Motion(NamedTuple):
+    """Coefficients by the angle of the motion, (n_azimuths, ns)."""
+
+    lift: Array
+    drag: Array
+
+
+def _by_motion(flow: PeriodFlow, laws: SectionLaws) -> _Motion:
+    more, cd = _beyond_thin(laws, flow.motion_angle)
+    return _Motion(_thin(laws, flow.motion_angle) + more, cd)
 
 
 def _beyond_thin(laws: SectionLaws, alpha: Array) -> tuple[Array, Array]:
@@ -227,36 +277,22 @@ def _mean(flow: PeriodFlow, laws: SectionLaws) -> Array:
     return share * weight / jnp.where(share > 0.0, total, 1.0)
 
 
-def _held(flow: PeriodFlow, laws: SectionLaws, alpha: Array) -> tuple[Array, Array, Array, Array]:
-    """Lift and drag by the angle of the lattice, lift borrowed, drag by the angle of the motion."""
-    share = flow.attached
-    more, cd = _beyond_thin(laws, alpha)
-    moving_more, moving_cd = _beyond_thin(laws, flow.motion_angle)
-    moving = _thin(laws, flow.motion_angle) + moving_more
-    near = jnp.einsum("kij,kj->ki", _mean(flow, laws), more)
-    held = share * _thin(laws, alpha) + near + (1.0 - share) * moving
-    return held, cd, near - share * more, moving_cd
-
-
-def _residual(flow: PeriodFlow, laws: SectionLaws, recambering: Array) -> Array:
-    """Lift coefficient of the lattice less that of the polars: (n_azimuths, ns)."""
-    alpha, lift = flow.angle_and_lift(recambering)
-    return lift - _held(flow, laws, alpha)[0]
-
-
-def _residual_and_slope(
-    flow: PeriodFlow, laws: SectionLaws, recambering: Array
+def _held(
+    flow: PeriodFlow, laws: SectionLaws, alpha: Array, more: Array, motion: _Motion
 ) -> tuple[Array, Array]:
-    """Residual (n_azimuths, ns) and its slope, a matrix of all strips at all azimuths."""
-    (n, ns), size = recambering.shape, recambering.size
-    alpha, lift = flow.angle_and_lift(recambering)
-    # A section's lift depends on its own angle alone: one direction gives all slopes.
-    tangent = jnp.ones_like(alpha)
-    by_alpha = jax.jvp(lambda a: _beyond_thin(laws, a)[0], (alpha,), (tangent,))[1]
-    held_slope = _mean(flow, laws) * by_alpha[:, None, :]
+    """Lift by the angle of the lattice and of the motion together, and what of it is borrowed."""
+    share = flow.attached
+    near = jnp.einsum("kij,kj->ki", _mean(flow, laws), more)
+    held = share * _thin(laws, alpha) + near + (1.0 - share) * motion.lift
+    return held, near - share * more
+
+
+def _slope(flow: PeriodFlow, laws: SectionLaws, more_by_alpha: Array) -> Array:
+    """Slope of the lift that is missing, a matrix of all strips at all azimuths."""
+    (n, ns), size = more_by_alpha.shape, more_by_alpha.size
+    held_slope = _mean(flow, laws) * more_by_alpha[:, None, :]
     held_slope += 2.0 * jnp.pi * flow.attached[:, :, None] * jnp.eye(ns)
     per_circulation = 1.0 / (flow.relative_speed * flow.strips.chord).reshape(-1, 1)
     angle_slope = per_circulation / jnp.pi * flow.response - jnp.eye(size)
     held_change = jnp.einsum("kij,kjm->kim", held_slope, angle_slope.reshape(n, ns, size))
-    slope = 2.0 * per_circulation * flow.response - held_change.reshape(size, size)
-    return lift - _held(flow, laws, alpha)[0], slope
+    return 2.0 * per_circulation * flow.response - held_change.reshape(size, size)

@@ -93,34 +93,26 @@ class StripFlow:
         return alpha, 2.0 * circulation / speed_chord
 
 
-def section_states(flow: StripFlow, recambering: Array, laws: SectionLaws | None) -> SectionStates:
-    """How the sections work with a given recambering.
+def unheld_states(flow: StripFlow) -> SectionStates:
+    """How the sections work without polars: with the lift of the lattice, and no drag.
 
     Parameters
     ----------
     flow : StripFlow
         Strips of the lattice at an operating point.
-    recambering : (ns,) array
-        Recambering of each strip [rad].
-    laws : SectionLaws or None
-        Polars of the strips; None takes the lift of the lattice, and no drag.
 
     Returns
     -------
     SectionStates
-        Flow of the sections, and the residual that the recambering has to bring to zero.
+        Flow of the sections.
     """
-    alpha, lift = flow.angle_and_lift(recambering)
-    held, cd, borrowed = lift, jnp.zeros_like(lift), jnp.zeros_like(lift)
-    if laws is not None:
-        more, cd = laws.beyond_thin(alpha)
-        borrowed = laws.mean @ more - more
-        held = laws.thin(alpha) + laws.mean @ more
-    return SectionStates(flow.relative_speed, alpha, held, cd, borrowed, lift - held)
+    alpha, lift = flow.angle_and_lift(jnp.zeros_like(flow.circulation))
+    none = jnp.zeros_like(lift)
+    return SectionStates(flow.relative_speed, alpha, lift, none, none, none)
 
 
-def solve_recambering(flow: StripFlow, laws: SectionLaws) -> Array:
-    """Recambering that brings lattice and polars to the same lift.
+def solve_recambering(flow: StripFlow, laws: SectionLaws) -> tuple[Array, SectionStates]:
+    """Recambering that brings lattice and polars to the same lift, and how the sections work then.
 
     Damped Newton steps, always from no recambering, so that the answer does not depend on what was
     computed before. Derivatives are those of the implicit function.
@@ -134,61 +126,75 @@ def solve_recambering(flow: StripFlow, laws: SectionLaws) -> Array:
 
     Returns
     -------
-    (ns,) array
+    recambering : (ns,) array
         Recambering of each strip [rad]; where the search fails, the last one tried, whose residual
         is not 0.
+    states : SectionStates
+        Flow of the sections.
     """
     fixed_flow, fixed_laws = jax.lax.stop_gradient((flow, laws))
     ns = flow.circulation.size
     fractions = jnp.asarray(_FRACTIONS)[:, None]
 
-    def residual(delta: Array) -> Array:
-        return _residual(fixed_flow, fixed_laws, delta)
+    def trial(delta: Array) -> _Trial:
+        alpha, lift = fixed_flow.angle_and_lift(delta)
+        # A section's lift depends on its own angle alone: one direction gives all slopes.
+        at, by_alpha = jax.jvp(fixed_laws.beyond_thin, (alpha,), (jnp.ones_like(alpha),))
+        return _Trial(delta, _missing(fixed_laws, alpha, lift, at[0]), *by_alpha)
 
-    def unfinished(state: _Newton) -> Array:
-        return (state.n_trials < _MAX_STEPS) & (jnp.abs(state.missing).max() > _TOLERANCE)
+    def unfinished(state: tuple[Array | int, _Trial]) -> Array:
+        n_trials, best = state
+        left = jnp.abs(best.missing).max() > _TOLERANCE
+        return (n_trials == 0) | (n_trials < _MAX_STEPS) & left
 
-    def step(state: _Newton) -> _Newton:
-        delta = state.recambering
-        missing, slope = _residual_and_slope(fixed_flow, fixed_laws, delta)
-        newton = -linear_algebra.solve(slope, missing)
+    def step(state: tuple[Array | int, _Trial]) -> tuple[Array | int, _Trial]:
+        n_trials, best = state
+        newton = -linear_algebra.solve(_slope(fixed_flow, fixed_laws, best), best.missing)
         newton = newton * jnp.minimum(1.0, _LONGEST_STEP / jnp.abs(newton).max())
-        trials = delta + fractions * newton
-        best = jnp.argmin((jax.vmap(residual)(trials) ** 2).sum(axis=1))
-        settled = jnp.abs(missing).max() <= _TOLERANCE
-        return _Newton(state.n_trials + 1, jnp.where(settled, delta, trials[best]), missing, slope)
+        trials = jax.vmap(trial)(best.recambering + fractions * newton)
+        closest = jnp.argmin((trials.missing**2).sum(axis=1))
+        return n_trials + 1, jax.tree.map(lambda of_trials: of_trials[closest], trials)
 
-    start = _Newton(0, jnp.zeros(ns), jnp.full(ns, jnp.inf), jnp.eye(ns))
-    end = jax.lax.while_loop(unfinished, step, start)
+    # Nothing is missing yet: the first step goes nowhere, and looks at no recambering.
+    none = jnp.zeros(ns)
+    start: tuple[Array | int, _Trial] = (0, _Trial(none, none, none, none))
+    _, best = jax.lax.while_loop(unfinished, step, start)
+    best = jax.lax.stop_gradient(best)
     # One more Newton step, in which alone the arguments count: its slope is that of the solution.
-    delta, slope = jax.lax.stop_gradient((end.recambering, end.slope))
-    return delta - linear_algebra.solve(slope, _residual(flow, laws, delta))
+    # It is so short that the polars are straight along it.
+    alpha, lift = flow.angle_and_lift(best.recambering)
+    more, cd = laws.beyond_thin(alpha)
+    missing = _missing(laws, alpha, lift, more)
+    newton = -linear_algebra.solve(_slope(fixed_flow, fixed_laws, best), missing)
+    settled = jnp.abs(best.missing).max() <= _TOLERANCE
+    recambering = best.recambering + jnp.where(settled, newton, 0.0)
+    end, lift = flow.angle_and_lift(recambering)
+    more, cd = more + best.more_by_alpha * (end - alpha), cd + best.cd_by_alpha * (end - alpha)
+    near = laws.mean @ more
+    held = laws.thin(end) + near
+    return recambering, SectionStates(
+        flow.relative_speed, end, held, cd, borrowed_lift=near - more, residual=lift - held
+    )
 
 
-class _Newton(NamedTuple):
-    """State of Newton's method."""
+class _Trial(NamedTuple):
+    """Recambering that is tried, the lift missing to the polars, and slopes of these."""
 
-    n_trials: Array | int
     recambering: Array
     missing: Array
-    slope: Array
+    more_by_alpha: Array
+    cd_by_alpha: Array
 
 
-def _residual(flow: StripFlow, laws: SectionLaws, recambering: Array) -> Array:
+def _missing(laws: SectionLaws, alpha: Array, lift: Array, more: Array) -> Array:
     """Lift coefficient of the lattice less that of the polars: (ns,)."""
-    alpha, lift = flow.angle_and_lift(recambering)
-    return lift - laws.thin(alpha) - laws.mean @ laws.beyond_thin(alpha)[0]
+    return lift - laws.thin(alpha) - laws.mean @ more
 
 
-def _residual_and_slope(
-    flow: StripFlow, laws: SectionLaws, recambering: Array
-) -> tuple[Array, Array]:
-    """Residual and its slope: (ns,), (ns, ns)."""
-    alpha, lift = flow.angle_and_lift(recambering)
-    # A section's lift depends on its own angle alone: one direction gives all slopes.
-    (more, _), (by_alpha, _) = jax.jvp(laws.beyond_thin, (alpha,), (jnp.ones_like(alpha),))
-    held_slope = 2.0 * jnp.pi * jnp.eye(alpha.size) + laws.mean * by_alpha
+def _slope(flow: StripFlow, laws: SectionLaws, trial: _Trial) -> Array:
+    """Slope of the lift that is missing with the recambering: (ns, ns)."""
+    identity = jnp.eye(trial.recambering.size)
+    held_slope = 2.0 * jnp.pi * identity + laws.mean * trial.more_by_alpha
     per_circulation = 1.0 / (flow.relative_speed * flow.strips.chord)[:, None]
-    angle_slope = per_circulation / jnp.pi * flow.response - jnp.eye(alpha.size)
-    slope = 2.0 * per_circulation * flow.response - held_slope @ angle_slope
-    return lift - laws.thin(alpha) - laws.mean @ more, slope
+    angle_slope = per_circulation / jnp.pi * flow.response - identity
+    return 2.0 * per_circulation * flow.response - held_slope @ angle_slope

@@ -19,8 +19,9 @@ from jax import Array
 from propmdao.aerodynamics.lattice.rings import BOUND_CORE
 from propmdao.aerodynamics.lattice.steady_wake import steady_wake
 from propmdao.aerodynamics.lattice.strips import Strips
+from propmdao.aerodynamics.solutions import elements
 from propmdao.aerodynamics.solutions.case import RotorCase
-from propmdao.aerodynamics.solutions.elements import rough, rough_thrust
+from propmdao.aerodynamics.solutions.elements import rough_thrust
 from propmdao.aerodynamics.solutions.lattice_loads import (
     BladeInfluence,
     LatticeGeometry,
@@ -40,8 +41,8 @@ from propmdao.aerodynamics.solutions.roots import Guess, at_root, decreasing_roo
 from propmdao.aerodynamics.vortices.cores import core_radius, middles
 from propmdao.aerodynamics.wakes.helical import helical_wake
 from propmdao.aerodynamics.wakes.momentum import (
+    axial_induced_velocity,
     lowest_induced_velocity,
-    momentum_induced_velocity,
     within_momentum_theory,
 )
 from propmdao.records.loads import PointLoads
@@ -64,6 +65,8 @@ _TOLERANCE = 1.0e-12  # relative, in the induced velocity
 _ROUGH_TOLERANCE = 1.0e-3
 _GUESS = 0.05  # of the tip speed
 _STEEPEST, _FLATTEST = -5.0, -1.0  # slopes that a guess may have
+
+rough = partial(elements.rough, momentum=axial_induced_velocity)
 
 
 @record
@@ -130,9 +133,10 @@ def induced_velocity(flow: AxialFlow, thrust: Scalar) -> Array:
     float
         Induced velocity [m/s].
     """
-    return momentum_induced_velocity(thrust, flow.case.state, flow.case.rotor.radius)
+    return axial_induced_velocity(thrust, flow.case.state, flow.case.rotor.radius)
 
 
+@compiled
 def loads_at(flow: AxialFlow, induced_velocity: Scalar) -> LatticeLoads:
     """Loads of blade 1 in the wake that a given induced velocity transports.
 

@@ -22,6 +22,8 @@ Struct. Multidiscip. Optim. 63, 2021) times what it is singular with.
 
 from __future__ import annotations
 
+from functools import partial
+
 import jax
 import jax.numpy as jnp
 from jax import Array
@@ -30,6 +32,7 @@ from propmdao.aerodynamics.lattice.rings import vortex_rings
 from propmdao.aerodynamics.lattice.strips import Strips, blade_strips
 from propmdao.aerodynamics.sections.laws import SectionLaws, section_laws
 from propmdao.aerodynamics.sections.recambering import SectionStates
+from propmdao.aerodynamics.solutions import elements
 from propmdao.aerodynamics.solutions.case import RotorCase
 from propmdao.aerodynamics.solutions.elements import (
     LEAST_SINE,
@@ -37,12 +40,11 @@ from propmdao.aerodynamics.solutions.elements import (
     against_rotation,
     element_in,
     prandtl_loss,
-    rough,
 )
 from propmdao.aerodynamics.solutions.result import RotorLoads, sections_agree, unless_still
 from propmdao.aerodynamics.solutions.roots import Guess, decreasing_root
 from propmdao.aerodynamics.wakes.momentum import (
-    momentum_induced_velocity,
+    axial_induced_velocity,
     within_momentum_theory,
 )
 from propmdao.records.loads import PointLoads
@@ -53,6 +55,8 @@ __all__ = ["evaluate", "flow_at", "rough", "solution", "solve"]
 
 # Relative, in the inflow angle, before the last step: derivatives are taken there.
 _TOLERANCE = 1.0e-10
+
+rough = partial(elements.rough, momentum=axial_induced_velocity)
 
 
 @record
@@ -95,7 +99,7 @@ def flow_at(case: RotorCase) -> BladeElements:
     case = case.in_floats()
     nodes, radius = case.rotor.nodes, case.rotor.radius
     quarter_line = 0.75 * nodes[0] + 0.25 * nodes[-1]
-    edges = jnp.hypot(quarter_line[:, 0], quarter_line[:, 1])
+    edges = jnp.sqrt(quarter_line[:, 0] ** 2 + quarter_line[:, 1] ** 2)
     strips = blade_strips(nodes, vortex_rings(nodes), radius)
     return BladeElements(case, strips, edges[:-1], edges[1:])
 
@@ -211,8 +215,9 @@ def _laws(flow: BladeElements) -> SectionLaws | None:
         return None
     turned, flown = case.state.rotation_speed * strips.radius, case.state.speed
     tip_speed = case.state.rotation_speed * case.rotor.radius
-    share = tip_speed / jnp.hypot(tip_speed, flown)
-    return section_laws(strips, jnp.hypot(turned, flown), share, case.state.air, case.sections)
+    share = tip_speed / jnp.sqrt(tip_speed**2 + flown**2)
+    speed = jnp.sqrt(turned**2 + flown**2)
+    return section_laws(strips, speed, share, case.state.air, case.sections)
 
 
 def _element(flow: BladeElements, laws: SectionLaws | None, phi: Array) -> Element:
@@ -298,7 +303,7 @@ def _rotor_loads(flow: BladeElements, phi: Array) -> RotorLoads:
     return RotorLoads(
         thrust=thrust,
         torque=n_blades * strip_torque.sum(),
-        induced_velocity=momentum_induced_velocity(thrust, state, radius),
+        induced_velocity=axial_induced_velocity(thrust, state, radius),
         circulation=circulation[None],
         strip_thrust=force[:, 2],
         strip_torque=strip_torque,

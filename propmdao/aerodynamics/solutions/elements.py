@@ -5,6 +5,7 @@ An element is the section in the middle of a strip, with the polar of two-dimens
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import NamedTuple, Protocol, Self
 
 import jax.numpy as jnp
@@ -15,6 +16,7 @@ from propmdao.aerodynamics.sections.laws import SectionLaws, section_laws
 from propmdao.aerodynamics.solutions.case import RotorCase
 from propmdao.aerodynamics.wakes.momentum import momentum_induced_velocity
 from propmdao.records.pytrees import Scalar
+from propmdao.records.states import RotorState
 
 # The swirl of an annulus that no air passes would be infinite: |sin phi| is kept above this,
 # smoothly. At an inflow angle of 3 deg it changes the momentum by 0.02 %.
@@ -72,7 +74,7 @@ def element_in(strips: Strips, laws: SectionLaws | None, wind: Array) -> Element
         Coefficients and angles.
     """
     backward, upward = ((wind * axis).sum(axis=1) for axis in (strips.backward, strips.upward))
-    alpha, share = jnp.arctan2(upward, backward), jnp.hypot(upward, backward)
+    alpha, share = jnp.arctan2(upward, backward), jnp.sqrt(upward**2 + backward**2)
     if laws is None:
         cl, cd = 2.0 * jnp.pi * (alpha - strips.zero_lift_angle), jnp.zeros_like(alpha)
     else:
@@ -132,14 +134,14 @@ def rough_thrust(case: RotorCase, strips: Strips, induced_velocity: Scalar) -> A
     laws = None
     if case.sections is not None:
         tip_speed = state.rotation_speed * rotor.radius
-        share = tip_speed / jnp.hypot(tip_speed, axial)
+        share = tip_speed / jnp.sqrt(tip_speed**2 + axial**2)
         laws = section_laws(strips, speed, share, state.air, case.sections)
     downward = jnp.array([0.0, 0.0, -1.0])
     wind = turned[:, None] * against_rotation(strips) + axial * downward
-    element = element_in(strips, laws, wind / jnp.hypot(turned, axial)[:, None])
+    element = element_in(strips, laws, wind / jnp.sqrt(turned**2 + axial**2)[:, None])
     # The quarter line of a swept tip may end a little beyond the tip radius.
     distance = jnp.maximum(rotor.radius / strips.radius - 1.0, 1.0e-3)
-    loss = prandtl_loss(rotor.n_blades, distance, jnp.hypot(axial / speed, LEAST_SINE))
+    loss = prandtl_loss(rotor.n_blades, distance, jnp.sqrt((axial / speed) ** 2 + LEAST_SINE**2))
     pressure = 0.5 * state.air.density * speed**2
     lifted = pressure * strips.chord * strips.width * element.c_n * loss
     return rotor.n_blades * lifted.sum()
@@ -160,7 +162,12 @@ class Flow(Protocol):
         """Return the same flow at another rotation speed [rad/s]."""
 
 
-def rough(flow: Flow, thrust_required: Scalar, rotation_speed: Scalar) -> Array:
+def rough(
+    flow: Flow,
+    thrust_required: Scalar,
+    rotation_speed: Scalar,
+    momentum: Callable[[Scalar, RotorState, Scalar], Array] = momentum_induced_velocity,
+) -> Array:
     """Thrust at a rotation speed, in the uniform inflow of the thrust required.
 
     Parameters
@@ -171,6 +178,8 @@ def rough(flow: Flow, thrust_required: Scalar, rotation_speed: Scalar) -> Array:
         Thrust of all blades [N].
     rotation_speed : float
         Rotation speed of the trial [rad/s].
+    momentum : callable
+        Momentum theory of the solver, `axial_induced_velocity` where there is no incidence.
 
     Returns
     -------
@@ -179,5 +188,4 @@ def rough(flow: Flow, thrust_required: Scalar, rotation_speed: Scalar) -> Array:
     """
     flow = flow.turning(rotation_speed)
     state, radius = flow.case.state, flow.case.rotor.radius
-    inflow = momentum_induced_velocity(thrust_required, state, radius)
-    return rough_thrust(flow.case, flow.strips, inflow)
+    return rough_thrust(flow.case, flow.strips, momentum(thrust_required, state, radius))

@@ -27,8 +27,8 @@ from propmdao.aerodynamics.sections.laws import ViscousSections, section_laws
 from propmdao.aerodynamics.sections.recambering import (
     SectionStates,
     StripFlow,
-    section_states,
     solve_recambering,
+    unheld_states,
 )
 from propmdao.aerodynamics.vortices.biot_savart import SegmentKernels, segment_kernels
 from propmdao.geometry.lattice import strip_middle
@@ -167,8 +167,8 @@ def axial_onset(lattice: LatticeGeometry, state: RotorState, induced_velocity: S
     tip_speed = omega * radius / lattice.strips.r_over_R
     return Onset(
         velocity,
-        jnp.hypot(omega * radius, axial_speed),
-        tip_speed / jnp.hypot(tip_speed, axial_speed),
+        jnp.sqrt((omega * radius) ** 2 + axial_speed**2),
+        tip_speed / jnp.sqrt(tip_speed**2 + axial_speed**2),
     )
 
 
@@ -267,11 +267,11 @@ def loads_with_wake(
     # The last rings carry the circulation of their whole strip, and the wake's.
     last = linear_algebra.solve(jnp.eye(ns) + carried[-ns:], alone[-ns:])
     strip_flow = StripFlow(strips, relative_speed, last[:, 0], last[:, 1:])
-    recambering, laws = jnp.zeros(ns), None
-    if sections is not None:
+    if sections is None:
+        recambering, states = jnp.zeros(ns), unheld_states(strip_flow)
+    else:
         laws = section_laws(strips, relative_speed, onset.turning_share, air, sections)
-        recambering = solve_recambering(strip_flow, laws)
-    states = section_states(strip_flow, recambering, laws)
+        recambering, states = solve_recambering(strip_flow, laws)
     known = jnp.concatenate([jnp.ones(1), recambering])
     of_strips = last @ known
     circulation = (alone @ known - carried @ of_strips).reshape(-1, ns)

@@ -101,14 +101,9 @@ def _core4(a: Array, b: Array, core_radius: Scalar) -> Array:
 
 def _moments(a: Array, b: Array) -> Array:
     """A - B and A x B, (6, n_segments), for a x b = P x (A - B) + A x B."""
-    return jnp.stack(
-        [
-            *(a - b),
-            a[1] * b[2] - a[2] * b[1],
-            a[2] * b[0] - a[0] * b[2],
-            a[0] * b[1] - a[1] * b[0],
-        ]
-    )
+    # In the order z, x, y first, which needs three rotations of rows and not four.
+    cross = a * jnp.roll(b, -1, axis=0) - jnp.roll(a, -1, axis=0) * b
+    return jnp.concatenate([a - b, jnp.roll(cross, -1, axis=0)])
 
 
 def _velocity(p: Array, m: Array) -> Array:

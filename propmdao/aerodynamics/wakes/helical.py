@@ -120,12 +120,12 @@ def helical_wake(
     # rotor where it hovers at negative thrust. At an angle V is a vector, and the stream along
     # which s counts is the resultant.
     def stream(induced: Scalar | Array) -> Array:
-        return jnp.hypot(state.edgewise_speed, speed + induced)
+        return jnp.sqrt(state.edgewise_speed**2 + (speed + induced) ** 2)
 
     s = stream(1.5 * w) * time / radius
     contraction = jnp.sqrt(stream(w) / stream(w + w * s / jnp.sqrt(1.0 + s * s)))
 
-    r_over_R = jnp.hypot(trailing_nodes[:, 0], trailing_nodes[:, 1]) / radius
+    r_over_R = jnp.sqrt(trailing_nodes[:, 0] ** 2 + trailing_nodes[:, 1] ** 2) / radius
     outward = outer_part(r_over_R, law)[:, None]
     axial = (1.0 - outward) * inner + outward * outer
     return helices(trailing_nodes, ages, rotor.n_blades, axial, contraction)
@@ -174,7 +174,7 @@ def helices(
     (n_filaments, n_blades, n_nodes, 3) array
         Nodes of the filaments, blade by blade [m].
     """
-    r0 = jnp.hypot(trailing_nodes[:, 0], trailing_nodes[:, 1])
+    r0 = jnp.sqrt(trailing_nodes[:, 0] ** 2 + trailing_nodes[:, 1] ** 2)
     psi0 = jnp.arctan2(trailing_nodes[:, 1], trailing_nodes[:, 0])
     blade_angle = 2.0 * jnp.pi / n_blades * jnp.arange(n_blades)
     psi = psi0[:, None, None] + blade_angle[None, :, None] - ages[None, None, :]

@@ -25,8 +25,35 @@ _LEAST_SPEED_FRACTION = 5.0e-3
 _HALVINGS = 60  # of the bracket: what 64 bits hold
 
 
+def axial_induced_velocity(thrust: Scalar, state: RotorState, radius: Scalar) -> Array:
+    """Induced velocity at the disk by momentum theory, in hover and axial flight.
+
+    Parameters
+    ----------
+    thrust : float
+        Thrust of all blades, negative when windmilling [N].
+    state : RotorState
+        Rotation speed, flight speed along the shaft and air of the rotor.
+    radius : float
+        Tip radius [m].
+
+    Returns
+    -------
+    float
+        Induced velocity w along the shaft, positive downstream [m/s]; in hover negative where the
+        thrust is.
+    """
+    return _axial_root(*_square_and_floor(thrust, state, radius), state.axial_speed)
+
+
+def _square_and_floor(thrust: Scalar, state: RotorState, radius: Scalar) -> tuple[Scalar, Scalar]:
+    """T / (2 rho A), and what the discriminant is kept above [m^2/s^2]."""
+    square = thrust / (2.0 * state.air.density * jnp.pi * radius**2)
+    return square, (_LEAST_SPEED_FRACTION * (state.rotation_speed * radius)) ** 2
+
+
 def momentum_induced_velocity(thrust: Scalar, state: RotorState, radius: Scalar) -> Array:
-    """Induced velocity at the disk by momentum theory.
+    """Induced velocity at the disk by momentum theory, at any incidence.
 
     Parameters
     ----------
@@ -41,11 +68,10 @@ def momentum_induced_velocity(thrust: Scalar, state: RotorState, radius: Scalar)
     -------
     float
         Induced velocity w along the shaft, positive downstream, root of Glauert's equation [m/s];
-        in hover negative where the thrust is.
+        without incidence that of `axial_induced_velocity`.
     """
-    square = thrust / (2.0 * state.air.density * jnp.pi * radius**2)
-    floor = (_LEAST_SPEED_FRACTION * (state.rotation_speed * radius)) ** 2
-    axial = _axial_root(square, state.axial_speed, floor)
+    square, floor = _square_and_floor(thrust, state, radius)
+    axial = _axial_root(square, floor, state.axial_speed)
     # Where both are traced, either root has to be finite, with its derivatives.
     tilted = jnp.asarray(state.edgewise_speed) != 0.0
     edgewise = jnp.where(tilted, state.edgewise_speed, state.rotation_speed * radius)
@@ -107,7 +133,7 @@ def _rises_everywhere(axial: Scalar, edgewise: Scalar) -> Array:
     return jnp.asarray(edgewise) ** 2 > 0.125 * jnp.asarray(axial) ** 2
 
 
-def _axial_root(square: Scalar, speed: Scalar, floor: Scalar) -> Array:
+def _axial_root(square: Scalar, floor: Scalar, speed: Scalar) -> Array:
     """Root of T / (2 rho A) = w (V + w); `square` is the left side [m^2/s^2]."""
     speed = jnp.asarray(speed)
     upward = (speed == 0.0) & (jnp.asarray(square) < 0.0)
@@ -149,4 +175,4 @@ def _tilted_root(square: Scalar, speed: Scalar, edgewise: Scalar, floor: Scalar)
 def _excess(w: Array, square: Scalar, speed: Scalar, edgewise: Scalar, floor: Scalar) -> Array:
     h = w + 0.5 * speed
     least = floor**2 * h / (h * h + edgewise**2) ** 1.5
-    return w * jnp.hypot(edgewise, speed + w) - least - square
+    return w * jnp.sqrt(edgewise**2 + (speed + w) ** 2) - least - square

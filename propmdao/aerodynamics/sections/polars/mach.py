@@ -44,31 +44,77 @@ def prandtl_glauert(mach: jax.Array | float, alpha: jax.Array) -> jax.Array:
     Prandtl and Glauert and pressure by less. Put on the lift coefficient in place of the pressure
     coefficient, as is often seen, it does the opposite.
     """
-    held = _held(mach, MACH_LIMIT)
-    return 1.0 + _attached(alpha) * (1.0 / jnp.sqrt(1.0 - held**2) - 1.0)
+    return 1.0 + attached_share(alpha) * attached_gain(mach)
 
 
-def drag_rise(
-    mach: jax.Array | float, alpha: jax.Array, cl: jax.Array, thickness: jax.Array
-) -> jax.Array:
-    """Compute the drag that shocks add to a section.
+def attached_gain(mach: jax.Array | float) -> jax.Array:
+    """Compute what `prandtl_glauert` adds to 1 where the flow is attached.
+
+    Parameters
+    ----------
+    mach : (n,) array or number
+        Mach number of the section.
+
+    Returns
+    -------
+    (n,) array
+        1 / sqrt(1 - M^2) - 1, held from `MACH_LIMIT` on.
+    """
+    return 1.0 / jnp.sqrt(1.0 - _held(mach, MACH_LIMIT) ** 2) - 1.0
+
+
+def attached_share(alpha: jax.Array) -> jax.Array:
+    """Compute how far the corrections hold at an angle of attack.
+
+    Parameters
+    ----------
+    alpha : (n,) array
+        Angle of attack [rad].
+
+    Returns
+    -------
+    (n,) array
+        1 where the flow is attached, 0 where it is separated.
+    """
+    # The angle of the flow to the chord line, whichever end is the front.
+    angle = jnp.abs(alpha - jnp.pi * jnp.round(alpha / jnp.pi))
+    fade = jnp.clip((angle - ATTACHED) / (SEPARATED - ATTACHED), 0.0, 1.0)
+    return 1.0 - fade**2 * (3.0 - 2.0 * fade)
+
+
+def beyond_critical(mach: jax.Array | float, thickness: jax.Array) -> jax.Array:
+    """Compute by how much a section without lift is beyond its critical Mach number.
 
     Parameters
     ----------
     mach : (n,) array or number
         Mach number of the section; held at `DRAG_RISE_LIMIT` beyond it, C1.
-    alpha : (n,) array
-        Angle of attack [rad].
-    cl : (n,) array
-        Lift coefficient at this Mach number.
     thickness : (n,) array
         Maximum thickness over chord.
 
     Returns
     -------
     (n,) array
+        M - M_crit, negative below it.
+    """
+    return _held(mach, DRAG_RISE_LIMIT) - (KORN_FACTOR - thickness) + DIVERGENCE_MARGIN
+
+
+def drag_rise(beyond: jax.Array, cl: jax.Array) -> jax.Array:
+    """Compute the drag that shocks add to a section in attached flow.
+
+    Parameters
+    ----------
+    beyond : (n,) array
+        Mach number over the critical one without lift, by `beyond_critical`.
+    cl : (n,) array
+        Lift coefficient at this Mach number.
+
+    Returns
+    -------
+    (n,) array
         Drag coefficient to be added, 20 (M - M_crit)^4 above the critical Mach number and 0 below,
-        C3; fading between 12 and 30 deg, where the drag of separated flow is not that of a shock.
+        C3; times `attached_share`, for the drag of separated flow is not that of a shock.
 
     Notes
     -----
@@ -78,9 +124,8 @@ def drag_rise(
     sweep. Korn's equation is good to about 0.02 in Mach number for sections of 6 to 18 % thickness
     and lift coefficients up to 0.8; it is held to nothing beyond.
     """
-    divergence = KORN_FACTOR - thickness - 0.1 * jnp.sqrt(cl**2 + _LITTLE_LIFT**2)
-    over = jnp.maximum(_held(mach, DRAG_RISE_LIMIT) - divergence + DIVERGENCE_MARGIN, 0.0)
-    return _attached(alpha) * 20.0 * over**4
+    over = jnp.maximum(beyond + 0.1 * jnp.sqrt(cl**2 + _LITTLE_LIFT**2), 0.0)
+    return 20.0 * over**4
 
 
 def _held(mach: jax.Array | float, limit: float) -> jax.Array:
@@ -88,11 +133,3 @@ def _held(mach: jax.Array | float, limit: float) -> jax.Array:
     mach, start = jnp.asarray(mach), limit - 0.05
     over = jnp.maximum(mach - start, 0.0)
     return jnp.minimum(mach, start) + 0.05 * jnp.tanh(over / 0.05)
-
-
-def _attached(alpha: jax.Array) -> jax.Array:
-    """1 where the flow is attached, 0 where it is separated."""
-    # The angle of the flow to the chord line, whichever end is the front.
-    angle = jnp.abs(alpha - jnp.pi * jnp.round(alpha / jnp.pi))
-    fade = jnp.clip((angle - ATTACHED) / (SEPARATED - ATTACHED), 0.0, 1.0)
-    return 1.0 - fade**2 * (3.0 - 2.0 * fade)

@@ -9,12 +9,18 @@ import jax.numpy as jnp
 import numpy as np
 import numpy.typing as npt
 
-from propmdao.aerodynamics.sections.polars.interpolation import clamped_stencil, periodic_stencil
+from propmdao.aerodynamics.sections.polars.interpolation import (
+    clamped_stencil,
+    periodic_cubic,
+    periodic_slopes,
+)
 from propmdao.aerodynamics.sections.polars.mach import (
     DRAG_RISE_LIMIT,
     MACH_LIMIT,
+    attached_gain,
+    attached_share,
+    beyond_critical,
     drag_rise,
-    prandtl_glauert,
 )
 from propmdao.records.pytrees import record
 from propmdao.runtime.compilation import compiled
@@ -88,16 +94,20 @@ class SectionCurves:
     values : (n_sections, 3, n_alpha) array
         Lift coefficient, natural logarithm of the drag coefficient, moment coefficient, as
         `PolarTable` has them.
-    mach : (n_sections,) array or number
-        Mach numbers.
-    thickness : (n_sections,) array, optional
-        Maximum thickness over chord; None where there is no drag rise to add.
+    slopes : (n_sections, 3, n_alpha) array
+        Slopes of `values` at the nodes [1/rad].
+    gain : (n_sections,) array or number
+        What Mach number adds to attached lift and moment, by `attached_gain`.
+    beyond : (n_sections,) array, optional
+        Mach number over the critical one without lift, by `beyond_critical`; None where there is
+        no drag rise to add.
     """
 
     alpha: jax.Array
     values: jax.Array
-    mach: jax.Array | float
-    thickness: jax.Array | None = None
+    slopes: jax.Array
+    gain: jax.Array
+    beyond: jax.Array | None = None
 
 
 def section_curves(
@@ -122,17 +132,23 @@ def section_curves(
     """
     index, weight = clamped_stencil(table.log_re, jnp.log(re))
     row = jnp.arange(table.values.shape[0])[:, None]
+
+    def through(curves: jax.Array, thickness: jax.Array | None = None) -> SectionCurves:
+        beyond = None if thickness is None else beyond_critical(mach, thickness)
+        slopes = periodic_slopes(table.alpha, curves)
+        return SectionCurves(table.alpha, curves, slopes, attached_gain(mach), beyond)
+
     if table.mach is None:
         near = table.values[row, :, index]
-        curves = jnp.einsum("nrca,nr->nca", near, weight)
-        return SectionCurves(table.alpha, curves, mach, table.thickness)
+        return through(jnp.einsum("nrca,nr->nca", near, weight), table.thickness)
     values = jnp.einsum("nrcma,nr->ncma", table.values[row, :, :, index], weight)
     machs = jnp.broadcast_to(jnp.asarray(mach, float), re.shape)
     index, weight = clamped_stencil(table.mach, machs)
     near = values[row, :, index]
-    return SectionCurves(table.alpha, jnp.einsum("nmca,nm->nca", near, weight), mach)
+    return through(jnp.einsum("nmca,nm->nca", near, weight))
 
 
+@compiled
 def curve_coefficients(
     curves: SectionCurves, alpha: jax.Array
 ) -> tuple[jax.Array, jax.Array, jax.Array]:
@@ -151,15 +167,16 @@ def curve_coefficients(
         Coefficients, C1 in the angle; cm about the quarter chord, nose up. Drag is with that of
         shocks, by `drag_rise`, where the curves have a thickness.
     """
-    index, weight = periodic_stencil(curves.alpha, alpha)
+    index, (by_value, by_slope) = periodic_cubic(curves.alpha, alpha)
     row = jnp.arange(curves.values.shape[0])[:, None]
-    near = curves.values[row, :, index]
-    cl, log_cd, cm = jnp.einsum("nac,na->cn", near, weight)
-    factor = prandtl_glauert(curves.mach, alpha)
-    cl, cd = factor * cl, jnp.exp(log_cd)
-    if curves.thickness is not None:
-        cd = cd + drag_rise(curves.mach, alpha, cl, curves.thickness)
-    return cl, cd, factor * cm
+    read = jnp.einsum("nac,na->cn", curves.values[row, :, index], by_value)
+    read += jnp.einsum("nac,na->cn", curves.slopes[row, :, index], by_slope)
+    attached = attached_share(alpha)
+    factor = 1.0 + attached * curves.gain
+    cl, cd = factor * read[0], jnp.exp(read[1])
+    if curves.beyond is not None:
+        cd = cd + attached * drag_rise(curves.beyond, cl)
+    return cl, cd, factor * read[2]
 
 
 @compiled

@@ -13,9 +13,10 @@ from jax import Array
 from propmdao.aerodynamics.lattice.rings import segment_circulation
 from propmdao.aerodynamics.sections.laws import SectionLaws, ViscousSections, section_laws
 from propmdao.aerodynamics.sections.period_recambering import (
+    HeldPeriod,
     PeriodFlow,
-    period_states,
     solve_period_recambering,
+    unheld_period_states,
 )
 from propmdao.aerodynamics.sections.recambering import SectionStates
 from propmdao.aerodynamics.solutions.lattice_loads import LatticeGeometry, profile_drag
@@ -121,14 +122,18 @@ def held_lattice(
         onset.motion_angle,
         *_strip_circulation(inverse[:, -ns:], normalwash, by_strips, onset.relative_speed),
     )
-    recambering = jnp.zeros((n, ns))
-    if laws is not None:
-        recambering = solve_period_recambering(flow, laws, recambering if start is None else start)
-    strips = flow.circulation + (flow.response @ recambering.ravel()).reshape(n, ns)
-    normalwash += jnp.tile(onset.relative_speed * recambering, (1, normalwash.shape[1] // ns))
+    none = jnp.zeros((n, ns))
+    if laws is None:
+        states = unheld_period_states(flow)
+        held = HeldPeriod(none, states, states)
+    else:
+        held = solve_period_recambering(flow, laws, none if start is None else start)
+    strips = flow.circulation + (flow.response @ held.recambering.ravel()).reshape(n, ns)
+    by_recambering = onset.relative_speed * held.recambering
+    normalwash += jnp.tile(by_recambering, (1, normalwash.shape[1] // ns))
     normalwash += jnp.einsum("kqsp,qs->kp", by_strips, strips)
     circulation = -jnp.einsum("bpr,bkr->kp", inverse, at_the_blades(normalwash, n_blades))
-    return HeldLattice(circulation, strips, recambering, *period_states(flow, recambering, laws))
+    return HeldLattice(circulation, strips, *held)
 
 
 def velocity_by_air_and_blades(

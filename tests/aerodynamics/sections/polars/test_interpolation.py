@@ -11,7 +11,8 @@ from propmdao.aerodynamics.sections.polars.interpolation import (
     MARGIN,
     clamped_stencil,
     dense,
-    periodic_stencil,
+    periodic_cubic,
+    periodic_slopes,
 )
 
 NODES = jnp.array([0.0, 0.3, 1.0, 1.4, 2.5])
@@ -47,13 +48,24 @@ def test_arguments_outside_are_held_within_a_margin() -> None:
     np.testing.assert_allclose(far, [-MARGIN * 0.3, 2.5 + MARGIN * 1.1], atol=1e-12)
 
 
+def around(values: jax.Array, angle: jax.Array) -> jax.Array:
+    index, (by_value, by_slope) = periodic_cubic(ANGLES, angle)
+    slopes = periodic_slopes(ANGLES, values)
+    return (by_value * values[index] + by_slope * slopes[index]).sum(axis=1)
+
+
+def test_slopes_over_a_turn_are_those_of_parabolas() -> None:
+    # Of a parabola they are exact, but at the ends of the turn, where this one has a kink.
+    slopes = periodic_slopes(ANGLES, jnp.stack([ANGLES**2, 0.0 * ANGLES + 2.0]))
+    np.testing.assert_allclose(slopes[0, 1:-1], 2.0 * ANGLES[1:-1], atol=1e-12)
+    np.testing.assert_allclose(slopes[0, [0, -1]], 0.0, atol=1e-12)
+    np.testing.assert_array_equal(slopes[1], 0.0)
+
+
 def test_angles_repeat_every_turn() -> None:
     values = jnp.sin(ANGLES - 0.3)
     x = jnp.linspace(-3.0, 3.0, 37)
-    first, turned = (
-        dense(*periodic_stencil(ANGLES, angle), ANGLES.size) @ values
-        for angle in (x, x + 4.0 * jnp.pi)
-    )
+    first, turned = (around(values, angle) for angle in (x, x + 4.0 * jnp.pi))
     np.testing.assert_allclose(first, turned, atol=1e-13)
     # Largest step 0.165 rad: slopes from parabolas err by h^2/6, values by h/4 of that.
     np.testing.assert_allclose(first, jnp.sin(x - 0.3), atol=2e-4)
@@ -63,8 +75,7 @@ def test_the_slope_is_continuous_across_the_turn() -> None:
     values = jnp.sin(ANGLES - 0.3)
 
     def value(angle: jax.Array) -> jax.Array:
-        index, weight = periodic_stencil(ANGLES, angle[None])
-        return (weight * values[index]).sum()
+        return around(values, angle[None])[0]
 
     left, right = jax.vmap(jax.grad(value))(jnp.pi + jnp.array([-1e-7, 1e-7]))
     assert float(left) == pytest.approx(float(right), abs=1e-5)
