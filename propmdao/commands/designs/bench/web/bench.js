@@ -253,6 +253,8 @@
 
   // ---- sounds, repeated without a click; A and B as loud to each other as they are
   const FADE = 0.01; // s, so that going over from one to the other is no click
+  const START = 3000; // ms in which an audio output starts, where there is one
+  const nothing = (time) => new Promise((done) => setTimeout(done, time, false));
   let context = null, playing = "", source = null, asked = 0;
   const fetched = new Map();
   const load = async (name) => {
@@ -271,7 +273,8 @@
     if (!name) { silence(); return; }
     try {
       context ??= new AudioContext();
-      await context.resume();
+      // Where there is no audio output, this may never be answered.
+      const begun = Promise.race([context.resume().then(() => true), nothing(START)]);
       for (const each of ["described", "bent"]) fetched.set(each, await load(each));
       if (turn !== asked) return;
       const { scale, buffer } = fetched.get(name);
@@ -285,6 +288,7 @@
       source.node.connect(gain).connect(context.destination);
       source.node.start();
       find(`hear-${name}`).dataset.heard = String(scale);
+      if (!await begun && turn === asked) throw new Error("the browser has no audio output");
     } catch (error) {
       trouble(`No sound: ${error.message}`);
       hear("");
