@@ -34,7 +34,7 @@ PROPMDAO = [words[1:] for words in commands() if words[0].endswith("propmdao")]
 CODE = [(page, k, code) for page in PAGES for k, code in enumerate(blocks(page, "python"))]
 #: Words of commands that compile for long. `tests/commands` asks for the same without the physics,
 #: and the notebooks with such commands run in `make docs`.
-LONG = {"--incidence", "--blade-element", "--wav", "flyover", "my_blade.toml"}
+LONG = {"--incidence", "3000:5000:500", "--wav", "flyover", "my_blade.toml", "sweep"}
 #: Compiles a lattice of its own; the sign of its forces is held by the tests of `AerodynamicsComp`.
 LONG_CODE = [("docs/conventions.md", 1)]
 
