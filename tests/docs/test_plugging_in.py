@@ -11,9 +11,15 @@ BLOCKS = (
     if PAGE.exists()
     else []
 )
-#: Each compiles a lattice of its own; what they show is held by tests of components, the last by
-#: those of the study of a climb.
-LONG = {"Several operating points", "Flight at an incidence", "Dymos: a segment of a mission"}
+#: Each compiles a lattice, or derivatives of one, of its own; what they show is held by tests of
+#: components, and that of Dymos by those of the study of a climb.
+LONG = {
+    "The diameter",
+    "Several operating points",
+    "Flight at an incidence",
+    "Minutes of hover: motor and battery",
+    "Dymos: a segment of a mission",
+}
 
 
 @pytest.mark.parametrize(
