@@ -230,6 +230,8 @@ def assert_directional():
                     difference = (ends[0][of] - ends[1][of]) / (2.0 * h)
                     largest = max(abs(exact[of]), 1e-4 * np.abs(value).max(), 1e-12)
                     errors[of].append(float(abs(difference - exact[of]) / largest))
+                if all(min(error) < tolerance for error in errors.values()):
+                    break
             prob.set_val(name, inputs[name])
             for of, error in errors.items():
                 assert min(error) < tolerance, f"{of} by {name}: {error}"
@@ -260,6 +262,7 @@ def assert_totals():
             start = prob.get_val(name).copy()
             along = scale * rng.standard_normal(start.shape)
             errors = {output: [] for output in of}
+            allowed = {output: (tolerances or {}).get(output, 1e-6) for output in of}
             exact = {output: totals[output, name] @ along.ravel() for output in of}
             for step in (1.0, 0.3, 0.1, 0.03, 0.01, 1e-3, 1e-4):
                 points = {}
@@ -273,10 +276,12 @@ def assert_totals():
                     size = 1e-6 * np.abs(prob.get_val(output)).max()
                     largest = max(np.abs(exact[output]).max(), size)
                     errors[output].append(np.abs(slope - exact[output]).max() / largest)
+                if all(min(errors[output]) < allowed[output] for output in of):
+                    break
             prob.set_val(name, start)
             for output in of:
-                tolerance = (tolerances or {}).get(output, 1e-6)
-                assert min(errors[output]) < tolerance, f"{output} by {name}: {errors[output]}"
+                found = errors[output]
+                assert min(found) < allowed[output], f"{output} by {name}: {found}"
         prob.run_model()
 
     return check

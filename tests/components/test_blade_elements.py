@@ -41,10 +41,10 @@ def test_the_group_has_what_an_analysis_has(group, propeller, small, broadband):
     prob.set_val("thrust_required", 1.2)
     prob.run_model()
     expected = pm.analyze(
-        propeller, thrust=1.2, speed=8.0, blade_element=True, broadband=broadband,
-        observers=OBSERVERS, fidelity=small,
+        propeller, rpm=prob.get_val("rpm").item(), speed=8.0, blade_element=True,
+        broadband=broadband, observers=OBSERVERS, fidelity=small,
     ).to_dict()  # fmt: skip
-    assert_allclose(prob.get_val("rpm"), expected["rpm"], rtol=1e-8)
+    assert_allclose(expected["thrust"], 1.2, rtol=1e-8)
     for name in ("thrust", "torque", "shaft_power", "eta", "J", "CT", "CQ"):
         quantity = RESULTS[name]
         value = prob.get_val(quantity.variable)
@@ -58,15 +58,20 @@ def test_the_group_has_what_an_analysis_has(group, propeller, small, broadband):
     assert_allclose(-2.0 * on_fluid[:, 2].sum(), 1.2, rtol=1e-8)
 
 
+AT_RPM = (AerodynamicsComp, {"rpm": 4200.0})
+TRIMMED = (TrimmedAerodynamicsComp, {"thrust_required": 1.2})
+
+
 @pytest.mark.parametrize(
-    ("component", "drive"),
+    ("component", "drive", "forward"),
     [
-        (AerodynamicsComp, {"rpm": 4200.0}),
-        pytest.param(TrimmedAerodynamicsComp, {"thrust_required": 1.2}, marks=pytest.mark.slow),
+        (*AT_RPM, False),
+        pytest.param(*AT_RPM, True, marks=pytest.mark.slow),  # which compiles as long again
+        pytest.param(*TRIMMED, True, marks=pytest.mark.slow),
     ],
 )
 def test_derivatives_forward_and_back(
-    meshes, problem_of, small, polars, assert_directional, component, drive
+    meshes, problem_of, small, polars, assert_directional, component, drive, forward
 ):
     prob = problem_of(
         component(**ROTOR, fidelity=small, polars=polars),
@@ -77,9 +82,10 @@ def test_derivatives_forward_and_back(
         **drive,
     )
     prob.run_model()
-    assert_directional(prob, 1e-6, forward=True)
+    assert_directional(prob, 1e-6, forward)
 
 
+@pytest.mark.slow  # nodes of the lattice stand still in the tests of its group
 def test_nodes_and_rest(group):
     """A node that stands still is zeros; the others are what they are alone."""
     prob = group(num_nodes=3)
@@ -139,5 +145,7 @@ def test_a_design_problem_by_blade_elements(propeller, small):
     words = {"free": ("twist",), "minimise": "power", "n_control": 5, "fidelity": small}
     prob = design_problem(propeller, point, **words, blade_element=True)
     prob.run_model()
-    loads = pm.analyze(propeller, point, blade_element=True, fidelity=small).loads
+    rpm = prob.get_val("rpm").item()
+    loads = pm.analyze(propeller, rpm=rpm, speed=4.0, blade_element=True, fidelity=small).loads
+    assert_allclose(float(loads.thrust), 2.0, rtol=1e-6)
     assert_allclose(prob.get_val("torque"), float(loads.torque), rtol=1e-6)

@@ -4,7 +4,10 @@ import openmdao.api as om
 import pytest
 from numpy.testing import assert_allclose
 
+from propmdao.acoustics.kinematics.observers import arc
 from propmdao.components import PropellerGroup
+
+OBSERVERS = arc(1.905, [-45.0, 0.0])
 
 
 @pytest.fixture(scope="module")
@@ -15,11 +18,13 @@ def propeller_at(small):
         prob = om.Problem(
             driver=om.ScipyOptimizeDriver(optimizer="SLSQP", disp=False), reports=False
         )
-        group = PropellerGroup(propeller="apce_10x7_uiuc", trim="rpm", fidelity=small)
+        group = PropellerGroup(
+            propeller="apce_10x7_uiuc", observers=OBSERVERS, trim="rpm", fidelity=small
+        )
         prob.model.add_subsystem("propeller", group, promotes=["*"])
         prob.model.add_design_var("rpm", lower=2000.0, upper=7000.0, ref=1000.0)
         prob.model.add_objective("efficiency", scaler=-1.0)
-        prob.setup()
+        prob.setup(mode="rev")  # with which it shares what other tests have compiled
         prob.set_val("speed", speed)
         return prob
 

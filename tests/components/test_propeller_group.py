@@ -279,10 +279,11 @@ def test_totals_against_differences(problem, assert_totals, point_inputs, trim, 
 
 
 def test_unreachable_thrust_is_a_failed_analysis(problem):
-    prob = problem(rpm_bounds=(1000.0, 2000.0))
+    prob = problem(rpm_bounds=(1000.0, 5000.0))
     prob.setup()
+    prob.set_val("thrust_required", 10.0)
     with pytest.raises(
-        om.AnalysisError, match=r"thrust 1.2 N is out of reach at 8 m/s: .* 2000 rpm"
+        om.AnalysisError, match=r"thrust 10 N is out of reach at 8 m/s: .* 5000 rpm"
     ):
         prob.run_model()
 

@@ -9,7 +9,8 @@ from pathlib import Path
 
 import pytest
 
-from propmdao.commands.program import main
+from propmdao.commands.program import build_parser, main
+from propmdao.formats.propellers import load_propeller
 
 ROOT = Path(__file__).parents[2]
 PAGES = ("README.md", "docs/conventions.md", "docs/architecture.md")
@@ -31,6 +32,15 @@ STUDIES = [words[1:] for words in commands() if words[0] == "python"]
 MAKE = [words[1:] for words in commands() if words[0] == "make"]
 PROPMDAO = [words[1:] for words in commands() if words[0].endswith("propmdao")]
 CODE = [(page, k, code) for page in PAGES for k, code in enumerate(blocks(page, "python"))]
+#: Words of commands that compile for long. `tests/commands` asks for the same without the physics,
+#: and the notebooks with such commands run in `make docs`.
+LONG = {"--incidence", "3000:5000:500", "--wav", "flyover", "my_blade.toml", "sweep"}
+#: Compiles a lattice of its own; the sign of its forces is held by the tests of `AerodynamicsComp`.
+LONG_CODE = [("docs/conventions.md", 1)]
+
+
+def slow_where(condition: bool) -> list[pytest.MarkDecorator]:
+    return [pytest.mark.slow] if condition else []
 
 
 @pytest.fixture(scope="module")
@@ -42,7 +52,21 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder
 
 
-@pytest.mark.parametrize("words", PROPMDAO, ids=" ".join)
+def test_propeller_file_of_the_readme_is_read(folder: Path) -> None:
+    assert load_propeller(folder / "my_blade.toml").n_blades > 1
+
+
+def test_commands_of_the_readme_are_understood() -> None:
+    for words in PROPMDAO:
+        if "--help" not in words:  # which ends the program
+            assert vars(build_parser().parse_args(words))["name"] == words[0]
+
+
+@pytest.mark.parametrize(
+    "words",
+    [pytest.param(words, marks=slow_where(not LONG.isdisjoint(words))) for words in PROPMDAO],
+    ids=" ".join,
+)
 def test_command_of_the_readme_runs(
     words: list[str], folder: Path, monkeypatch: pytest.MonkeyPatch, capsys
 ) -> None:
@@ -84,7 +108,11 @@ def test_target_of_the_readme_exists(words: list[str], checkout: Path) -> None:
     subprocess.run(["make", "--dry-run", *words], cwd=checkout, check=True, capture_output=True)
 
 
-@pytest.mark.parametrize(("page", "k", "code"), CODE, ids=[f"{p} {k}" for p, k, _ in CODE])
+@pytest.mark.parametrize(
+    ("page", "k", "code"),
+    [pytest.param(*block, marks=slow_where(block[:2] in LONG_CODE)) for block in CODE],
+    ids=[f"{page} {k}" for page, k, _ in CODE],
+)
 def test_code_block_of_a_page_runs(page: str, k: int, code: str) -> None:
     exec(compile(code, f"{page}, block {k + 1}", "exec"), {"__name__": "block"})
 

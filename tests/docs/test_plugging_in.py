@@ -11,9 +11,24 @@ BLOCKS = (
     if PAGE.exists()
     else []
 )
+#: Each compiles a lattice, or derivatives of one, of its own; what they show is held by tests of
+#: components, and that of Dymos by those of the study of a climb.
+LONG = {
+    "The diameter",
+    "Several operating points",
+    "Flight at an incidence",
+    "Minutes of hover: motor and battery",
+    "Dymos: a segment of a mission",
+}
 
 
-@pytest.mark.parametrize(("title", "code"), BLOCKS, ids=[title for title, _ in BLOCKS])
+@pytest.mark.parametrize(
+    ("title", "code"),
+    [
+        pytest.param(*block, id=block[0], marks=[pytest.mark.slow] if block[0] in LONG else [])
+        for block in BLOCKS
+    ],
+)
 def test_block_of_the_page_runs(title, code):
     for package in ("dymos", "aviary"):
         if re.search(rf"^import {package}\b", code, re.M):
@@ -22,4 +37,5 @@ def test_block_of_the_page_runs(title, code):
 
 
 def test_every_block_is_found(checkout):
+    assert {title for title, _ in BLOCKS} > LONG
     assert len(BLOCKS) == PAGE.read_text("utf-8").count("```python") > 3

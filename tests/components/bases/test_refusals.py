@@ -162,19 +162,21 @@ def test_levels_that_are_no_numbers_have_no_soft_maximum(problem_of):
         prob.run_model()
 
 
-def test_complex_step_is_refused_in_one_line(propeller, small):
+@pytest.mark.parametrize("component", [Roots, Root])
+def test_complex_step_is_refused_in_one_line(component):
+    """By the bases of all components."""
     prob = om.Problem(reports=False)
-    group = PropellerGroup(propeller=propeller, fidelity=small, trim="rpm", viscous=False)
-    prob.model.add_subsystem("propeller", group, promotes=["*"])
+    prob.model.add_subsystem("comp", component(), promotes=["*"])
     prob.setup(force_alloc_complex=True)
+    prob.set_val("x", [3.0, 2.0])
     prob.run_model()
     message = 'has exact derivatives and no complex step: check them with method="fd"'
     with pytest.raises(RuntimeError, match=message):
-        prob.check_totals(of=["thrust"], wrt=["rpm"], method="cs", out_stream=None)
+        prob.check_totals(of=["y"], wrt=["x"], method="cs", out_stream=None)
     prob.set_complex_step_mode(False)
     prob.set_complex_step_mode(True)
     with pytest.raises(RuntimeError, match=message):
-        prob.compute_totals(of=["thrust"], wrt=["rpm"])
+        prob.compute_totals(of=["y"], wrt=["x"])
     prob.set_complex_step_mode(False)
     with pytest.raises(RuntimeError, match=message):
         prob.check_partials(method="cs", out_stream=None)

@@ -156,7 +156,8 @@ def test_a_worker_that_dies_ends_the_run_and_a_second_run_ends_as_if_it_had_not(
         prob.run_driver()
     n_known = len((tmp_path / "checkpoint").read_text().splitlines()) - 1
     assert f"The {n_known} designs evaluated so far are in" in raised.value.__notes__[0]
-    again = models.problem(deadly, n_workers=2, checkpoint=tmp_path / "checkpoint")
+    assert (tmp_path / "killed").exists()  # so that it does not kill this process, now
+    again = models.problem(deadly, checkpoint=tmp_path / "checkpoint")
     again.run_driver()
     assert again.driver.history == plain.driver.history
     assert again.get_val("x").tolist() == plain.get_val("x").tolist()

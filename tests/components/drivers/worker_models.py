@@ -39,7 +39,7 @@ class Disc(om.ExplicitComponent):
         x, trouble = inputs["x"], self.options["trouble"]
         time.sleep(self.options["seconds"])
         if trouble == "compile" and not hasattr(self, "compiled"):
-            time.sleep(2.5)
+            time.sleep(1.6)
             self.compiled = True
         if x[0] < -1.0:
             raise om.AnalysisError("left of -1")
@@ -47,6 +47,8 @@ class Disc(om.ExplicitComponent):
             if trouble == "value":
                 raise ValueError("chord_over_R must be positive")
             if trouble == "hang":
+                if self.options["flag"] is not None:
+                    self.options["flag"].touch()
                 time.sleep(1000.0)
             if trouble == "strange":
                 raise StrangeError("this", "that")

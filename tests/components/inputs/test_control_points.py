@@ -91,6 +91,18 @@ def test_values_that_represent_the_blade_say_nothing(blade_of, propeller):
         blade_of(design_distributions={"beta": propeller.r_over_R}, control="values")
 
 
+@pytest.mark.parametrize("method", ["slinear", "akima", "cubic"])
+def test_derivatives_of_distributions_by_increments(blade_of, assert_totals, method):
+    """From there on derivatives are those of the group, whatever the control."""
+    points = {"beta": POINTS, "chord_over_R": POINTS}
+    prob = blade_of(design_distributions=points, spline_method=method)
+    prob.set_val("beta_cp", [1.0, 2.0, 0.5, -1.0], units="deg")
+    prob.set_val("chord_over_R_cp", [1.0, 1.2, 0.9, 1.0])
+    prob.run_model()
+    assert_totals(prob, ["beta", "chord_over_R"], ["beta_cp", "chord_over_R_cp"])
+
+
+@pytest.mark.slow
 def test_derivatives_by_increments(blade_of, assert_totals):
     prob = blade_of(design_distributions={"beta": POINTS, "chord_over_R": POINTS})
     prob.run_model()

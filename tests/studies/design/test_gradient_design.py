@@ -74,6 +74,16 @@ def test_slopes_are_per_tip_radius(study: ModuleType, problem: om.Problem, name:
     assert_allclose(slope, np.diff(points) / np.diff(study.free_form.AT))
 
 
+def test_the_written_blade_has_the_distributions_of_the_problem(
+    study: ModuleType, problem: om.Problem, tmp_path: Path
+) -> None:
+    blade = study.free_form.write_blade(problem, "new", tmp_path)
+    for name, written in (("chord_over_R", blade.c_over_R), ("sweep_over_R", blade.sweep_over_R)):
+        assert_allclose(written, problem.get_val(name).ravel(), rtol=1e-9, atol=1e-12)
+    assert_allclose(blade.beta_deg, problem.get_val("beta", units="deg").ravel(), rtol=1e-9)
+
+
+@pytest.mark.slow
 def test_the_written_blade_is_that_of_the_problem(
     study: ModuleType, problem: om.Problem, tmp_path: Path
 ) -> None:
@@ -101,6 +111,7 @@ def test_a_search_that_goes_on_starts_within_its_bounds(study: ModuleType) -> No
             assert_allclose(value, bounds[name][side], atol=1e-9)
 
 
+@pytest.mark.slow
 def test_contributions_lead_from_the_start_to_the_optimum(
     study: ModuleType, problem: om.Problem
 ) -> None:

@@ -16,6 +16,7 @@ def study(import_study: Callable[[str], ModuleType]) -> ModuleType:
     return import_study("multi_point")
 
 
+@pytest.mark.slow  # designs for two points in words are searched for in the components' tests
 def test_the_blade_is_quieter_on_average_at_no_more_torque(study, coarsest, capsys):
     prob = study.multi_point(load_propeller("apcsf_11x4.7_uiuc"), coarsest)
     start, limit = prob.get_val("level")[0], prob.get_val("torque").copy()

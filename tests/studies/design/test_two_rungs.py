@@ -37,11 +37,13 @@ def test_a_blade_of_a_batch_is_that_of_an_analysis(study: ModuleType, sorting: A
     designs = low + np.random.default_rng(3).random((9, 10)) * (high - low)
     rung = sorting(np.concatenate([designs, designs[:1]]))
     assert sorting.n_blades == 9 and rung.torque[9] == rung.torque[0]
+    point = replace(study.POINT, thrust=None, rpm=float(rung.rpm[8]))
     analysis = pm.analyze(
-        study.propeller_of(designs[8], "eighth"), study.POINT, blade_element=True,
+        study.propeller_of(designs[8], "eighth"), point, blade_element=True,
         observers=study.MICROPHONE, fidelity=study.SORTING,
     )  # fmt: skip
     level = float(oaspl_db(analysis.tones.total)[0])
+    np.testing.assert_allclose(float(analysis.loads.thrust), study.POINT.thrust, rtol=1e-7)
     expected = [analysis.rpm, float(analysis.loads.torque), level]
     np.testing.assert_allclose([of[8] for of in rung], expected, rtol=1e-7)
 

@@ -22,6 +22,7 @@ def study(import_study: Callable[[str], ModuleType]) -> ModuleType:
     return module
 
 
+@pytest.mark.slow  # a flyover by the command is heard in tests/commands
 def test_files_and_levels(study, tmp_path, capsys, monkeypatch):
     monkeypatch.setattr("sys.argv", ["flyover.py", "--output", str(tmp_path)])
     study.main()

@@ -180,6 +180,7 @@ def test_sensitivities_and_the_twist_each_point_needs(
     assert len(needed) == few.static.rpm.size + (few.dynamic.J <= 0.5).sum()
 
 
+@pytest.mark.slow
 def test_prescribed_wake_has_the_thrust_of_the_one_that_moves_as_it_says(import_study):
     transport = import_study("wake_transport")
     (row,) = transport.compare([(CASE, 2, 0.0)], steps=12)
@@ -199,6 +200,7 @@ def test_drift_of_the_wake_is_changed_in_all_its_parts(import_study):
     assert (wake.passage_width, wake.inner_edge) == (default.passage_width, default.inner_edge)
 
 
+@pytest.mark.slow
 def test_hover_noise_table_is_that_of_its_tones(import_study, monkeypatch, capsys, tmp_path):
     hover = import_study("hover_noise")
     printed = run(hover, monkeypatch, capsys, tmp_path)

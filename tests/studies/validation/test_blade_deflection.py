@@ -22,6 +22,7 @@ def study(import_study: Callable[[str], ModuleType]) -> ModuleType:
     return import_study("blade_deflection")
 
 
+@pytest.mark.slow
 def test_blades_are_compared_rigid_and_elastic(
     study: ModuleType,
     coarsest: Fidelity,

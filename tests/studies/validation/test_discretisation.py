@@ -21,6 +21,8 @@ TESTED = Fidelity(
     n_harmonics=3,
     period_wake=WakeGrid(2.0, 4.0, 1.5, 30.0),
 )
+SCHEDULE = Marching(timestep_deg=30.0, start="impulsive")
+STEADY = dataclasses.replace(SCHEDULE, start="steady")
 
 
 def rows_of(path):
@@ -36,6 +38,7 @@ def test_a_mesh_of_the_thesis_is_a_surface_and_half_of_it_a_lattice(import_study
     assert len(spatial.MESHES) == 10 and spatial.MESHES[7] == (65, 80)
 
 
+@pytest.mark.slow
 def test_spatial_study_writes_table_and_figures(import_study, monkeypatch, capsys, tmp_path):
     spatial = import_study("spatial_convergence")
     monkeypatch.setattr(spatial, "DEFAULT", TESTED)
@@ -64,20 +67,31 @@ def test_spread_is_from_the_quietest_to_the_loudest(import_study):
     assert study.spreads_db(rows) == [0.75] * 3
 
 
+@pytest.mark.slow
 def test_thickness_noise_does_not_depend_on_time_and_revolutions_settle(import_study):
     revolutions = import_study("revolutions")
-    schedule = Marching(timestep_deg=30.0, start="impulsive")
-    three, four = revolutions.compare((3, 4), schedule, TESTED)
+    three, four = revolutions.compare((3, 4), SCHEDULE, TESTED)
     assert (three["revolutions"], four["revolutions"]) == (3, 4)
     assert three["thickness -45, dB"] == pytest.approx(four["thickness -45, dB"], abs=1e-9)
     # The start has more thrust: without wake there is no downwash.
     assert three["thrust, N"] > four["thrust, N"] > four["last turn, N"]
+    (row,) = import_study("temporal_convergence").compare((30.0,), STEADY, TESTED)
+    assert row["thrust, N"] == pytest.approx(four["last turn, N"], rel=0.02)
+
+
+def test_time_steps_divide_the_march(import_study):
     temporal = import_study("temporal_convergence")
     assert temporal.TIMESTEPS_DEG[0] == 3.0 and all(
         Marching(timestep_deg=step).n_steps > 0 for step in temporal.TIMESTEPS_DEG
     )
-    (row,) = temporal.compare((30.0,), dataclasses.replace(schedule, start="steady"), TESTED)
-    assert row["thrust, N"] == pytest.approx(four["last turn, N"], rel=0.02)
+
+
+@pytest.mark.slow
+def test_forces_that_are_straight_between_time_steps_are_heard(import_study):
+    temporal = import_study("temporal_convergence")
+    (row,) = temporal.compare((30.0,), STEADY, TESTED)
+    # From the steady wake every revolution has the same thrust.
+    assert row["thrust, N"] == pytest.approx(row["last turn, N"], rel=1e-3)
     # Nothing but the tones of steady loads is heard, unless forces are straight between steps of
     # 30 deg: what is smooth has corners then.
     assert row["total -45, dB"] == pytest.approx(row["BPF -45, dB"], abs=0.05)

@@ -23,7 +23,7 @@ def two_equalities(x):
     return value, [x.sum() - 5.0, x[2] - 2 * (x[3] + x[4]) + 3.0]
 
 
-@pytest.mark.parametrize("seed", [1, 2, 3, 4])
+@pytest.mark.parametrize("seed", [1, 2, *(pytest.param(n, marks=pytest.mark.slow) for n in (3, 4))])
 @pytest.mark.parametrize(
     ("function", "bound", "n_g", "equals", "optimum", "generations"),
     [
@@ -47,7 +47,7 @@ def test_equalities_are_met_at_the_optimum(
     assert " and polished by " in prob.driver.message
 
 
-@pytest.mark.parametrize("seed", [1, 2])
+@pytest.mark.parametrize("seed", [pytest.param(1, marks=pytest.mark.slow), 2])
 def test_two_equalities_of_five_variables_without_polishing(problem, seed):
     """Feasible, which takes a slack that shrinks slowly enough; the optimum is 0."""
     prob = problem(
