@@ -39,7 +39,10 @@ def c81(machs: list[float], drag_rise: float) -> str:
     ("machs", "drag_rise", "thrust", "torque"),
     [
         ([0.0, 0.6], 1.0, 24.37, 0.3865),  # lift at Mach 0.6 is what the file says it is
-        ([0.0], 1.0, 25.18, 0.4045),  # nothing is said: Prandtl and Glauert raise it
+        # Slow, for a table of one column is another program; sections hold the same.
+        pytest.param(
+            [0.0], 1.0, 25.18, 0.4045, marks=pytest.mark.slow
+        ),  # nothing is said: Prandtl and Glauert raise it
         ([0.0, 0.6], 5.0, 24.15, 0.5112),  # drag grows between the columns
     ],
 )
