@@ -14,7 +14,8 @@ from propmdao.formats.propellers import load_propeller
 from propmdao.records.fidelity import Fidelity
 
 PROPELLER = load_propeller("apcsf_11x4.7_uiuc")
-COARSE = Fidelity(n_chordwise=3, n_spanwise=10, n_contour=21, n_surface_span=12, n_harmonics=4)
+# The mesh of tests/regression, whose compiled programs all of these tests share.
+COARSE = Fidelity(n_chordwise=4, n_spanwise=8, n_contour=21, n_surface_span=16, n_harmonics=5)
 ARC = arc(1.905, [-45.0, 0.0, 45.0])
 
 
