@@ -39,7 +39,7 @@ def c81(machs: list[float], drag_rise: float) -> str:
     ("machs", "drag_rise", "thrust", "torque"),
     [
         ([0.0, 0.6], 1.0, 24.37, 0.3865),  # lift at Mach 0.6 is what the file says it is
-        # Slow, for a table of one column is another program; sections hold the same.
+        # Slow, a program of its own; tests of C81 files hold the rule for a column that is alone.
         pytest.param(
             [0.0], 1.0, 25.18, 0.4045, marks=pytest.mark.slow
         ),  # nothing is said: Prandtl and Glauert raise it
