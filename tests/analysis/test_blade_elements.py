@@ -6,12 +6,13 @@ import pytest
 import propmdao as pm
 from propmdao.analysis.request import Request
 from propmdao.analysis.sweeping.batches import analyze_each
-from propmdao.commands.program import main
 from propmdao.propeller.catalog import catalog_names
 
 PROPELLER = pm.load_propeller("apcsf_11x4.7")
-POINT = {"rpm": 4200.0, "speed": 4.0}
-COARSE = pm.Fidelity(n_chordwise=2, n_spanwise=6, n_azimuths=12)
+TILTED = pm.Fidelity(n_chordwise=2, n_spanwise=6, n_azimuths=12)
+# The mesh of tests/regression, whose compiled programs all of these tests share.
+COARSE = pm.Fidelity(n_chordwise=4, n_spanwise=8, n_contour=21, n_surface_span=16, n_harmonics=5)
+POINT = {"rpm": 4200.0, "speed": 4.0, "fidelity": COARSE}
 
 
 def test_an_analysis_by_blade_elements_has_loads_and_noise():
@@ -32,6 +33,7 @@ def test_an_analysis_by_blade_elements_has_loads_and_noise():
     assert Request.from_dict(elements.to_dict()).model == elements.model
 
 
+@pytest.mark.slow  # batches of trimmed blade elements are tested, too
 def test_a_thrust_is_reached():
     analysis = pm.analyze(PROPELLER, thrust=1.5, speed=4.0, blade_element=True)
     np.testing.assert_allclose(float(analysis.loads.thrust), 1.5, rtol=1e-8)
@@ -40,7 +42,7 @@ def test_a_thrust_is_reached():
 @pytest.mark.slow
 def test_at_an_incidence_they_have_loads_around_the_turn_and_noise():
     """A drone that leans forward by 20 deg, at its thrust; sweeps have the same numbers."""
-    asked = {"thrust": 1.5, "speed": 8.0, "incidence_deg": 70.0, "fidelity": COARSE}
+    asked = {"thrust": 1.5, "speed": 8.0, "incidence_deg": 70.0, "fidelity": TILTED}
     observers = pm.arc(1.905, [-90.0])
     analysis = pm.analyze(PROPELLER, **asked, observers=observers, blade_element=True)
     loads = analysis.loads
@@ -83,14 +85,8 @@ def test_the_difference_of_both_grows_with_the_chord():
 @pytest.mark.parametrize("name", catalog_names())
 def test_every_propeller_of_the_catalogue_has_loads(name):
     """Swept tips, too, whose quarter line ends beyond the tip radius."""
-    loads = pm.analyze(pm.load_propeller(name), rpm=4000.0, blade_element=True).loads
+    loads = pm.analyze(
+        pm.load_propeller(name), rpm=4000.0, blade_element=True, fidelity=COARSE
+    ).loads
     assert bool(loads.converged)
     assert float(loads.thrust) > 0.0
-
-
-def test_the_report_says_that_there_was_no_lattice(capsys):
-    options = ["analyze", "apcsf_11x4.7", "--rpm", "4000", "--blade-element"]
-    assert main(options) == 0
-    assert "Blade elements, no lattice" in capsys.readouterr().out
-    assert main([*options, "--vtk", "folder"]) == 2
-    assert "--vtk draws the lattice" in capsys.readouterr().err

@@ -39,7 +39,9 @@ def c81(machs: list[float], drag_rise: float) -> str:
     ("machs", "drag_rise", "thrust", "torque"),
     [
         ([0.0, 0.6], 1.0, 24.37, 0.3865),  # lift at Mach 0.6 is what the file says it is
-        ([0.0], 1.0, 25.18, 0.4045),  # nothing is said: Prandtl and Glauert raise it
+        # Nothing is said: Prandtl and Glauert raise it, as tests of C81 files hold, too. Slow, for
+        # a table of one column is a program of its own.
+        pytest.param([0.0], 1.0, 25.18, 0.4045, marks=pytest.mark.slow),
         ([0.0, 0.6], 5.0, 24.15, 0.5112),  # drag grows between the columns
     ],
 )

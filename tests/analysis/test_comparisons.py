@@ -70,7 +70,7 @@ def apcsf_at_two_observers():
         load_propeller("apcsf_11x4.7_uiuc"),
         rpm=4200.0,
         observers=arc(1.905, [0.0, -45.0]),
-        fidelity=Fidelity(2, 4, 5, 4, 2),
+        fidelity=Fidelity(4, 8, 21, 16, 5),
     )
 
 

@@ -18,7 +18,8 @@ from propmdao.propeller.checks import PropellerError
 from propmdao.records.fidelity import Fidelity
 from propmdao.records.models import ElasticModel, LoadModel
 
-COARSE = Fidelity(n_chordwise=2, n_spanwise=8, n_contour=21, n_surface_span=12, n_harmonics=3)
+# The mesh of tests/regression, whose compiled programs all of these tests share.
+COARSE = Fidelity(n_chordwise=4, n_spanwise=8, n_contour=21, n_surface_span=16, n_harmonics=5)
 MADE = load_propeller("apcsf_11x4.7")
 NOTHING = {"youngs_modulus": None, "material_density": None}  # of a material
 # Of the maker's material (1.6 million psi, specific gravity 1.7), its root as thin as the airfoil.

@@ -25,7 +25,8 @@ from propmdao.records.fidelity import Fidelity
 from propmdao.runtime.finite import NotFiniteError
 
 PROPELLER = load_propeller("apcsf_11x4.7_uiuc")
-COARSE = Fidelity(n_chordwise=2, n_spanwise=4, n_contour=5, n_surface_span=4, n_harmonics=2)
+# The mesh of tests/regression, whose compiled programs all of these tests share.
+COARSE = Fidelity(n_chordwise=4, n_spanwise=8, n_contour=21, n_surface_span=16, n_harmonics=5)
 ASKED: dict[str, Any] = {
     "rpm": 4200.0,
     "speed": 8.0,

@@ -21,7 +21,8 @@ from propmdao.records.models import NoiseModel, SelfNoiseModel
 from propmdao.records.states import OperatingPoint
 
 PROPELLER = load_propeller("apcsf_11x4.7_uiuc")
-COARSE = Fidelity(n_chordwise=3, n_spanwise=10, n_contour=21, n_surface_span=12, n_harmonics=4)
+# The mesh of tests/regression, whose compiled programs all of these tests share.
+COARSE = Fidelity(n_chordwise=4, n_spanwise=8, n_contour=21, n_surface_span=16, n_harmonics=5)
 HEIGHT = 20.0
 
 

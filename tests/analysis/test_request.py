@@ -23,7 +23,8 @@ from propmdao.records.states import OperatingPoint
 from propmdao.records.wake_law import WakeGrid, WakeLaw
 
 PROPELLER = load_propeller("apcsf_11x4.7_uiuc")
-COARSE = Fidelity(n_chordwise=3, n_spanwise=8, n_contour=15, n_surface_span=10, n_harmonics=3)
+# The mesh of tests/regression, whose compiled programs all of these tests share.
+COARSE = Fidelity(n_chordwise=4, n_spanwise=8, n_contour=21, n_surface_span=16, n_harmonics=5)
 
 
 def test_single_values_go_into_the_records_that_hold_them():
@@ -156,7 +157,7 @@ ASKED_AGAIN: dict[str, Asked] = {
         "trip": "heavy",
         "observers": point(1.905, -10.0, [0.0, 30.0]),
         "surroundings": Surroundings(3.0, level_flight=True, absorption=True),
-        "fidelity": dataclasses.replace(COARSE, wake=WakeGrid(turns=4.0)),
+        "fidelity": dataclasses.replace(COARSE, wake=WakeGrid(turns=5.95)),
     },
 }
 
@@ -185,7 +186,12 @@ def test_groups_of_observers_are_saved():
 
 def test_a_saved_result_says_what_was_asked_of_which_blade():
     result = analyze(
-        PROPELLER, rpm=4200.0, n_blades=3, density=1.1, fidelity=COARSE, observers=arc(2.0, [0.0])
+        PROPELLER,
+        rpm=4200.0,
+        n_blades=3,
+        density=1.1,
+        fidelity=COARSE,
+        observers=arc(2.0, [0.0, 30.0]),
     ).to_dict()
     assert result["propeller"] == {
         "name": "apcsf_11x4.7_uiuc",
@@ -209,7 +215,7 @@ def test_a_saved_result_says_what_was_asked_of_which_blade():
     assert loads["viscous"] and loads["transition"] == used
     assert result["model"]["noise"] == {"broadband": None}
     assert result["model"]["fidelity"] == dataclasses.asdict(COARSE)
-    assert result["listening"]["observers"] == [[2.0, 0.0, 0.0]]
+    assert result["listening"]["observers"] == [[2.0, 0.0, 0.0], pytest.approx([3**0.5, 0, 1])]
     assert set(LEVELS) <= result["observers"][0].keys()
 
 

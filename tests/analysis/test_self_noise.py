@@ -22,7 +22,8 @@ from propmdao.records.fidelity import Fidelity
 from propmdao.records.quantities import BROADBAND_LEVELS, LEVELS
 
 PROPELLER = load_propeller("apcsf_11x4.7_uiuc")
-COARSE = Fidelity(n_chordwise=3, n_spanwise=10, n_contour=21, n_surface_span=12, n_harmonics=4)
+# The mesh of tests/regression, whose compiled programs all of these tests share.
+COARSE = Fidelity(n_chordwise=4, n_spanwise=8, n_contour=21, n_surface_span=16, n_harmonics=5)
 OBSERVERS = arc([1.905, 3.81], -45.0)
 RADII = strip_interpolation(PROPELLER.r_over_R, COARSE.n_spanwise)
 MECHANISMS = [field.name for field in dataclasses.fields(SelfNoise)]

@@ -25,7 +25,8 @@ from propmdao.formats.propellers import load_propeller
 from propmdao.records.fidelity import Fidelity
 
 PROPELLER = load_propeller("apcsf_11x4.7")
-COARSE = Fidelity(n_chordwise=2, n_spanwise=4, n_contour=5, n_surface_span=4, n_harmonics=2)
+# The mesh of tests/regression, whose compiled programs all of these tests share.
+COARSE = Fidelity(n_chordwise=4, n_spanwise=8, n_contour=21, n_surface_span=16, n_harmonics=5)
 NONE = Uncertainties(twist_deg=0.0, chord=0.0, n_crit=(5.0, 5.0), drag=0.0)
 
 

@@ -44,7 +44,8 @@ J = [0.6]
 CT = [0.01]
 CP = [0.02]
 """
-COARSE = Fidelity(n_chordwise=2, n_spanwise=4, n_contour=9, n_surface_span=5, n_harmonics=1)
+# The mesh of tests/regression, whose compiled programs all of these tests share.
+COARSE = Fidelity(n_chordwise=4, n_spanwise=8, n_contour=21, n_surface_span=16, n_harmonics=5)
 
 
 def points(rpm, j, ct, cp) -> Points:

@@ -334,6 +334,17 @@ def test_what_an_elastic_blade_cannot_be_is_refused(
     assert message in refused("analyze", PROPELLER, "--rpm", "4000", *arguments.split())
 
 
+def test_the_report_says_that_there_was_no_lattice(
+    recorder: Any, capsys: pytest.CaptureFixture[str]
+) -> None:
+    options = ["analyze", PROPELLER, "--rpm", "4000", "--blade-element"]
+    assert main(options) == 0
+    assert recorder.asked[0].model.loads.blade_element
+    assert "Blade elements, no lattice" in capsys.readouterr().out
+    assert main([*options, "--vtk", "folder"]) == 2
+    assert "--vtk draws the lattice" in capsys.readouterr().err
+
+
 def test_help_explains_every_option(capsys: pytest.CaptureFixture[str]) -> None:
     with pytest.raises(SystemExit) as exit_:
         main(["analyze", "--help"])

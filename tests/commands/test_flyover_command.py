@@ -3,21 +3,28 @@
 from __future__ import annotations
 
 import csv
+import functools
 import json
 from collections.abc import Callable
 from pathlib import Path
 
 import pytest
 
+from propmdao.analysis import single_point
 from propmdao.commands.program import main
+from propmdao.records.fidelity import Fidelity
 
 PROPELLER = "apcsf_11x4.7"
+# The mesh of tests/regression, whose compiled programs all of these tests share.
+COARSE = Fidelity(n_chordwise=4, n_spanwise=8, n_contour=21, n_surface_span=16, n_harmonics=5)
 FLIGHT = "--rpm 4200 --speed 8 --height 20 --duration 20 --trip heavy --json".split()
 
 
 def test_json_holds_the_flight_its_levels_and_their_history(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
+    coarse = functools.partial(single_point.analyze, fidelity=COARSE)
+    monkeypatch.setattr(single_point, "analyze", coarse)
     out = tmp_path / "levels.csv"
     assert (
         main(["flyover", PROPELLER, *FLIGHT, "--trip", "heavy", "--json", "--out", str(out)]) == 0

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import shutil
 import subprocess
 import sys
 from pathlib import Path
@@ -18,8 +19,11 @@ jax.jit(lambda x: jnp.linalg.solve(x, x))(jnp.eye(3) + 1.0).block_until_ready()
 """
 
 
-def import_room(room: str = "aerodynamics", **environment: str | Path) -> tuple[str, str]:
-    """Float type and cache folder after the import, in a process of its own that compiles once."""
+def import_room(room: str, **environment: str | Path) -> str:
+    """Cache folder after the import, in a process of its own that compiles once.
+
+    Each test begins with another room: whichever is imported first sets JAX up.
+    """
     surroundings = {
         key: value
         for key, value in os.environ.items()
@@ -34,41 +38,49 @@ def import_room(room: str = "aerodynamics", **environment: str | Path) -> tuple[
     )
     assert result.stderr == ""
     dtype, _, folder = result.stdout.strip().partition(" ")
-    return dtype, folder
+    assert dtype == "float64"
+    return folder
+
+
+@pytest.fixture(scope="module")
+def kept(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, Path]:
+    """Home of a cache that a process has filled, and the folder that it said."""
+    home = tmp_path_factory.mktemp("cache")
+    return home, Path(import_room("aerodynamics", XDG_CACHE_HOME=home))
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="the cache's place is that of Linux")
-def test_compiled_code_is_kept_and_read_back_without_a_word(tmp_path: Path) -> None:
-    dtype, folder = import_room(XDG_CACHE_HOME=tmp_path)
-    assert dtype == "float64"
-    assert Path(folder) == tmp_path / "propmdao" / "jax"
-    entries = sorted(Path(folder).iterdir())
+def test_compiled_code_is_kept_and_read_back_without_a_word(kept: tuple[Path, Path]) -> None:
+    home, folder = kept
+    assert folder == home / "propmdao" / "jax"
+    entries = sorted(folder.iterdir())
     assert entries
-    import_room(XDG_CACHE_HOME=tmp_path)
-    assert sorted(Path(folder).iterdir()) == entries
+    import_room("aerodynamics", XDG_CACHE_HOME=home)
+    assert sorted(folder.iterdir()) == entries
 
 
 def test_an_unusable_home_keeps_nothing_and_says_nothing(tmp_path: Path) -> None:
     (tmp_path / "file").touch()
     unusable = tmp_path / "file" / "home"
-    assert import_room(HOME=unusable, XDG_CACHE_HOME=unusable)[1] == "None"
+    assert import_room("records.pytrees", HOME=unusable, XDG_CACHE_HOME=unusable) == "None"
 
 
 def test_the_users_own_cache_stays(tmp_path: Path) -> None:
-    _, folder = import_room(JAX_COMPILATION_CACHE_DIR=tmp_path / "mine")
+    folder = import_room("acoustics", JAX_COMPILATION_CACHE_DIR=tmp_path / "mine")
     assert Path(folder) == tmp_path / "mine"
 
 
-@pytest.mark.parametrize("room", ["acoustics", "geometry", "records.pytrees"])
-def test_whichever_room_is_imported_first(tmp_path: Path, room: str) -> None:
-    assert import_room(room, XDG_CACHE_HOME=tmp_path)[0] == "float64"
-
-
-def test_a_cache_entry_cut_short_costs_no_more_than_compiling(tmp_path: Path) -> None:
-    _, folder = import_room(XDG_CACHE_HOME=tmp_path)
-    for entry in Path(folder).iterdir():
+def test_a_cache_entry_cut_short_costs_no_more_than_compiling(
+    kept: tuple[Path, Path], tmp_path: Path
+) -> None:
+    home, folder = kept
+    copied = tmp_path / "home"
+    shutil.copytree(home, copied)
+    entries = list((copied / folder.relative_to(home)).iterdir())
+    assert entries
+    for entry in entries:
         entry.write_bytes(entry.read_bytes()[:20])
-    import_room(XDG_CACHE_HOME=tmp_path)
+    import_room("geometry", XDG_CACHE_HOME=copied)
 
 
 def test_only_the_blas_that_jax_factorises_with_loses_its_threads() -> None:

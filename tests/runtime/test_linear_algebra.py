@@ -37,11 +37,12 @@ def test_mapped(axes):
     """Mapped over either argument, or both, and twice, each system is solved."""
     matrix = matrices(*([5] if axes[0] == 0 else []))
     right = jnp.asarray(RNG.standard_normal((*([5] if axes[1] == 0 else []), N)))
-    solutions = jax.vmap(linear_algebra.solve, axes)(matrix, right)
-    products = jnp.einsum("...ij,...j", matrix, solutions)
-    np.testing.assert_allclose(products, jnp.broadcast_to(right, products.shape), atol=1e-13)
-    many = jnp.stack([matrix, 2.0 * matrix])
-    twice = jax.vmap(jax.vmap(linear_algebra.solve, axes), (0, None))(many, right)
+    solutions = jax.jit(jax.vmap(linear_algebra.solve, axes))(matrix, right)
+    solutions = np.asarray(solutions)
+    products = np.einsum("...ij,...j", matrix, solutions)
+    np.testing.assert_allclose(products, np.broadcast_to(right, products.shape), atol=1e-13)
+    many = np.stack([matrix, 2.0 * matrix])
+    twice = jax.jit(jax.vmap(jax.vmap(linear_algebra.solve, axes), (0, None)))(many, right)
     np.testing.assert_allclose(twice, [solutions, 0.5 * solutions], rtol=1e-11)
 
 
@@ -54,8 +55,8 @@ def test_inverse():
 def test_eigenvalues():
     """Eigenvalues of a batch are those of NumPy."""
     batch = matrices(3)
-    batch = batch + jnp.swapaxes(batch, -1, -2)
-    values = jax.vmap(linear_algebra.eigenvalues)(batch)
+    batch = batch + np.swapaxes(batch, -1, -2)
+    values = jax.jit(jax.vmap(linear_algebra.eigenvalues))(batch)
     np.testing.assert_allclose(values, np.linalg.eigvalsh(batch), atol=1e-12)
 
 
@@ -63,25 +64,27 @@ def test_derivatives():
     """First and second derivatives in both directions are those of JAX's own solution."""
     matrix, right = matrices(), jnp.asarray(RNG.standard_normal(N))
 
-    def length(solve):
-        return lambda a, b: (solve(a, b) ** 2).sum()
+    def derivatives(solve):
+        def length(a, b):
+            return (solve(a, b) ** 2).sum()
 
-    for derivative in (jax.jacfwd, jax.grad, jax.hessian):
-        own, theirs = (
-            derivative(length(solve), argnums=(0, 1))(matrix, right)
-            for solve in (linear_algebra.solve, jnp.linalg.solve)
-        )
-        for value, expected in zip(jax.tree.leaves(own), jax.tree.leaves(theirs), strict=True):
-            np.testing.assert_allclose(value, expected, rtol=1e-9, atol=1e-12)
+        kinds = (jax.jacfwd, jax.grad, jax.hessian)
+        at_once = jax.jit(lambda a, b: [kind(length, argnums=(0, 1))(a, b) for kind in kinds])
+        return jax.tree.leaves(at_once(matrix, right))
+
+    own, theirs = derivatives(linear_algebra.solve), derivatives(jnp.linalg.solve)
+    for value, expected in zip(own, theirs, strict=True):
+        np.testing.assert_allclose(value, expected, rtol=1e-9, atol=1e-12)
 
 
 def test_derivatives_of_a_batch():
     """The gradient of a mapped solution is mapped, too."""
     batch, right = matrices(4), jnp.asarray(RNG.standard_normal((4, N)))
-    each = jax.grad(lambda a, b: jax.vmap(linear_algebra.solve)(a, b).sum())(batch, right)
-    for one, a, b in zip(each, batch, right, strict=True):
-        expected = jax.grad(lambda a, b: linear_algebra.solve(a, b).sum())(a, b)
-        np.testing.assert_allclose(one, expected, atol=1e-13)
+    of_all = jax.jit(jax.grad(lambda a, b: jax.vmap(linear_algebra.solve)(a, b).sum()))
+    of_one = jax.jit(jax.grad(lambda a, b: linear_algebra.solve(a, b).sum()))
+    each = np.asarray(of_all(batch, right))
+    for one, a, b in zip(each, np.asarray(batch), np.asarray(right), strict=True):
+        np.testing.assert_allclose(one, of_one(a, b), atol=1e-13)
 
 
 def test_no_batch_reaches_lapack():

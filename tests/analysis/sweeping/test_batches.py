@@ -17,8 +17,23 @@ from propmdao.analysis.sweeping import batches
 from propmdao.analysis.sweeping.batches import analyze_each
 
 PROPELLER = pm.load_propeller("apcsf_11x4.7_uiuc")
-SMALL: dict[str, Any] = {"fidelity": pm.Fidelity(n_chordwise=2, n_spanwise=4)}
+# The mesh of tests/regression, whose compiled programs all of these tests share.
+COARSE = pm.Fidelity(n_chordwise=4, n_spanwise=8, n_contour=21, n_surface_span=16, n_harmonics=5)
+SMALL: dict[str, Any] = {"fidelity": COARSE}
 ELEMENTS: dict[str, Any] = {"blade_element": True, **SMALL}
+
+
+def counted_blades(monkeypatch: pytest.MonkeyPatch) -> list[Any]:
+    """What blades are made ready of from now on."""
+    made: list[Any] = []
+    of = batches.ModelledBlade.of
+
+    def counted(*values: Any) -> Any:
+        made.append(values)
+        return of(*values)
+
+    monkeypatch.setattr(batches.ModelledBlade, "of", counted)
+    return made
 
 
 def numbers(analysis: Any) -> list[float]:
@@ -118,8 +133,9 @@ def test_the_lattice_goes_in_calls_of_several_points(
         )
     alone = [next(analyze_each(PROPELLER, [one])) for one in asked]
     assert not solvers  # the code of one point is compiled already
+    made = counted_blades(monkeypatch)
     together = list(analyze_each(PROPELLER, asked))
-    assert solvers == [axial]
+    assert solvers == [axial] and len(made) == 1
     for one, other in zip(together[:2], alone[:2], strict=True):
         np.testing.assert_allclose(numbers(one.result), numbers(other.result), rtol=1e-8)
     assert str(together[2].result) == str(alone[2].result) != ""
@@ -131,20 +147,13 @@ def test_the_lattice_goes_in_calls_of_several_points(
 
 
 def test_a_blade_is_made_ready_once(monkeypatch: pytest.MonkeyPatch) -> None:
-    """By the lattice, too."""
-    made = []
-    of = batches.ModelledBlade.of
-
-    def counted(*values: Any) -> Any:
-        made.append(values)
-        return of(*values)
-
-    monkeypatch.setattr(batches.ModelledBlade, "of", counted)
-    asked: list[Any] = [{"rpm": rpm, **SMALL} for rpm in (3000.0, 4000.0, 5000.0)]
+    """By the lattice, too; of two points, for which no code of several is compiled."""
+    made = counted_blades(monkeypatch)
+    asked: list[Any] = [{"rpm": rpm, **SMALL} for rpm in (3000.0, 5000.0)]
     outcomes = list(analyze_each(PROPELLER, asked))
     assert len(made) == 1
-    alone = pm.analyze(PROPELLER, **asked[2])
-    np.testing.assert_allclose(numbers(outcomes[2].result), numbers(alone), rtol=1e-12)
+    alone = pm.analyze(PROPELLER, **asked[1])
+    np.testing.assert_allclose(numbers(outcomes[1].result), numbers(alone), rtol=1e-12)
 
 
 def test_a_blade_that_cannot_be_fails_at_all_its_points() -> None:

@@ -248,30 +248,34 @@ def test_with_the_directivity_of_an_airfoil_sections_sound_as_psu_wopwop_has_the
     (container,) = hovering.broadband
     noise, air = container.noise, hovering.air
     bands = jnp.asarray(WRITTEN_HZ)[:, None, None]
+
+    @jax.jit
+    def heard(edges, observer):
+        way = observer - edges.position
+        d = jnp.linalg.norm(way, axis=-1)
+        approach = 1.0 - jnp.sum(edges.velocity * way, -1) / (air.sound_speed * d)
+        normal = jnp.cross(edges.chord_direction, edges.span_direction)
+        axes = (edges.chord_direction, edges.span_direction, normal)
+        mach = edges.section.speed / air.sound_speed
+        radiated = radiation(*(jnp.sum(way * axis, -1) for axis in axes), mach)
+        section = edges.section
+        layer = boundary_layer(
+            section.chord, section.speed, section.angle_of_attack, air.kinematic_viscosity,
+            noise.trip,
+        )  # fmt: skip
+        emitted = bands * approach
+        edge = trailing_edge_noise(emitted, section, layer, radiated, air)
+        last = jax.tree.map(lambda q: q[..., -1], radiated)
+        vortex = tip_noise(emitted[..., -1], edges.tip, last, air, noise.tip)
+        spectra = {name: q.mean(axis=1).sum(axis=-1) for name, q in edge._asdict().items()}
+        return spectra | {"tip": vortex.mean(axis=-1)}
+
     for number, observer in enumerate(hovering.observers[0].position[:2]):
         parts = dict.fromkeys(WRITTEN, 0.0)
         for blade in line_blades(container, noise):
-            edges = moving_edges(container, noise, blade, 0.0)
-            way = observer - edges.position
-            d = jnp.linalg.norm(way, axis=-1)
-            approach = 1.0 - jnp.sum(edges.velocity * way, -1) / (air.sound_speed * d)
-            normal = jnp.cross(edges.chord_direction, edges.span_direction)
-            axes = (edges.chord_direction, edges.span_direction, normal)
-            mach = edges.section.speed / air.sound_speed
-            radiated = radiation(*(jnp.sum(way * axis, -1) for axis in axes), mach)
-            section = edges.section
-            layer = boundary_layer(
-                section.chord, section.speed, section.angle_of_attack, air.kinematic_viscosity,
-                noise.trip,
-            )  # fmt: skip
-            emitted = bands * approach
-            edge = trailing_edge_noise(emitted, section, layer, radiated, air)
-            last = jax.tree.map(lambda q: q[..., -1], radiated)
-            vortex = tip_noise(emitted[..., -1], edges.tip, last, air, noise.tip)
-            for name, spectrum in edge._asdict().items():
-                if name in parts:
-                    parts[name] += np.asarray(spectrum.mean(axis=1).sum(axis=-1))
-            parts["tip"] += np.asarray(vortex.mean(axis=-1))
+            spectra = heard(moving_edges(container, noise, blade, 0.0), observer)
+            for name in parts:
+                parts[name] += np.asarray(spectra[name])
         for name in ("pressure_side", "suction_side", "separation", "tip"):
             difference = np.asarray(level_db(parts[name])) - WRITTEN[name][number]
             # At 1 kHz separation depends on the angle by tens of decibels.

@@ -96,7 +96,7 @@ def test_inputs_have_meaning_and_unit(page):
     assert ["rotation speed", "4200", "rpm"] in inputs.rows
     assert ["density of the air", "1.225", "kg/m³"] in inputs.rows
     assert ["lattice held to the polars of the sections", "yes", ""] in inputs.rows
-    assert ["fidelity n spanwise", "10", ""] in inputs.rows
+    assert ["fidelity n spanwise", "8", ""] in inputs.rows
 
 
 def test_a_band_has_both_ends_of_every_input_and_what_is_left_out():

@@ -12,7 +12,8 @@ import propmdao as pm
 from propmdao.aerodynamics.sections.polars.propeller_polars import polars_for
 from propmdao.figures.rotor.of_rotor import rotor_figures
 
-SMALL = pm.Fidelity(n_chordwise=2, n_spanwise=6, n_contour=5, n_surface_span=4, n_harmonics=2)
+# The mesh of tests/regression, whose compiled programs all of these tests share.
+SMALL = pm.Fidelity(n_chordwise=4, n_spanwise=8, n_contour=21, n_surface_span=16, n_harmonics=5)
 
 
 @pytest.fixture(scope="module")

@@ -5,6 +5,7 @@ from __future__ import annotations
 import dataclasses
 import warnings
 
+import jax
 import jax.numpy as jnp
 import numpy as np
 import pytest
@@ -38,7 +39,8 @@ AIR, OMEGA = Air(density=1.2, sound_speed=340.0), 1200.0
 def nodes():
     propeller = load_propeller("apcsf_11x4.7_uiuc")
     span = surface_interpolation(propeller.r_over_R, 8)
-    return np.asarray(surface_nodes(Blade.from_propeller(propeller), span, 11))
+    made = jax.jit(surface_nodes, static_argnums=2)
+    return np.asarray(made(Blade.from_propeller(propeller), span, 11))
 
 
 @pytest.fixture(scope="module")
@@ -53,7 +55,7 @@ def loads():
 
 @pytest.fixture(scope="module")
 def rotor(nodes, loads):
-    panels = surface_panels(jnp.asarray(nodes))
+    panels = jax.jit(surface_panels)(nodes)
     return Rotor(equally_spaced(2, 0.4), OMEGA, panels, loads)
 
 
@@ -71,11 +73,11 @@ def test_the_files_hold_the_panels(nodes, loads, rotor):
         np.concatenate([getattr(part, name)[0] for part in parts])
         for name in ("position", "vector")
     )
-    for of_files, own in ((center, rotor.panels.center), (area, rotor.panels.vector_area)):
+    of_panels = np.asarray(rotor.panels.center), np.asarray(rotor.panels.vector_area)
+    for of_files, own in zip((center, area), of_panels, strict=True):
         assert of_files.shape == own.shape
     tensors = [
-        np.einsum("ni,nj->ij", *map(np.asarray, pair))
-        for pair in ((center, area), (rotor.panels.center, rotor.panels.vector_area))
+        np.einsum("ni,nj->ij", *map(np.asarray, pair)) for pair in ((center, area), of_panels)
     ]
     np.testing.assert_allclose(area.sum(axis=0), 0, atol=1e-10)
     # the volume three times, off the diagonal nothing

@@ -13,7 +13,8 @@ from propmdao.analysis.request import Request
 from propmdao.commands.designs.bench.workbench import Workbench
 
 AT = (1.905, -45.0)
-COARSE = pm.Fidelity(n_chordwise=3, n_spanwise=10, n_contour=21, n_surface_span=12, n_harmonics=4)
+# The mesh of tests/regression, whose compiled programs all of these tests share.
+COARSE = pm.Fidelity(n_chordwise=4, n_spanwise=8, n_contour=21, n_surface_span=16, n_harmonics=5)
 
 
 @pytest.fixture(scope="session")
