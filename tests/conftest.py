@@ -62,11 +62,19 @@ def _resident_bytes() -> int:
 _held = [0]  # memory held after compiled code was last let go
 
 
+def _most_bytes() -> int:
+    """Memory that compiled code may take: the processes of a run together half of the machine's."""
+    n_processes = int(os.environ.get("PYTEST_XDIST_WORKER_COUNT", "1"))
+    if "SC_PHYS_PAGES" not in os.sysconf_names:
+        return 3 * 2**30
+    return os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE") // (2 * n_processes)
+
+
 @pytest.fixture(autouse=True, scope="module")
 def _compiled_code_fits_in_memory() -> Iterator[None]:
-    """Let compiled code go where it has grown large: all of the tests' is 7 GB a process."""
+    """Let compiled code go where it has grown large: what was traced has to be traced again."""
     yield
-    if _resident_bytes() - _held[0] > 3 * 2**30:
+    if _resident_bytes() - _held[0] > _most_bytes():
         import jax
 
         jax.clear_caches()

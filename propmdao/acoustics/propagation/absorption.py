@@ -11,8 +11,10 @@ from jax.typing import ArrayLike
 
 from propmdao.acoustics.signals import Tones
 from propmdao.records.air import Air
+from propmdao.runtime.compilation import compiled
 
 
+@compiled
 def absorption_db_per_m(frequency_hz: ArrayLike, air: Air) -> Array:
     """Attenuation of pure tones by still air.
 

@@ -24,6 +24,7 @@ from propmdao.acoustics.signals import Tones
 from propmdao.records.air import require_known_air
 from propmdao.records.listening import Surroundings
 from propmdao.records.states import RotorState
+from propmdao.runtime.compilation import compiled
 
 _ON_GROUND = 1e-9  # m: rounding of directions
 
@@ -155,6 +156,7 @@ def bands_by_paths(
     return bands_with_reflection(power[0], power[1], f, delay)
 
 
+@compiled
 def way_flying_along(positions: ArrayLike, mach: ArrayLike) -> tuple[Array, Array]:
     """Way of the sound to observers that fly along with its source.
 

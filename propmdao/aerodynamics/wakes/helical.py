@@ -31,6 +31,7 @@ from propmdao.aerodynamics.wakes.ages import wake_azimuths
 from propmdao.records.pytrees import Scalar, record, static
 from propmdao.records.states import RotorState
 from propmdao.records.wake_law import WakeGrid, WakeLaw
+from propmdao.runtime.compilation import compiled
 
 _NEAR_DEG = 45.0
 
@@ -80,6 +81,7 @@ def wake_transport(law: WakeLaw = WakeLaw(), grid: WakeGrid = WakeGrid()) -> Wak
     return WakeTransport(law, ages, n_near, n_turn)
 
 
+@compiled
 def helical_wake(
     trailing_nodes: Array,
     transport: WakeTransport,

@@ -110,6 +110,7 @@ class SectionCurves:
     beyond: jax.Array | None = None
 
 
+@compiled
 def section_curves(
     table: PolarTable, re: jax.Array, mach: jax.Array | float = 0.0
 ) -> SectionCurves:
