@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+from functools import partial
 
 import jax
 import jax.numpy as jnp
@@ -25,9 +26,14 @@ BANDS = third_octave_centers(315, 20e3)
 OBSERVERS = arc(1.5, [-45.0, 10.0])
 
 
-def hear(strips, n_blades=2, omega=440.0, flight=(0.0, 0.0), observers=OBSERVERS, **options):
+@partial(compiled, static_argnames=("n_blades", "options"), optimisation=0)
+def heard_with(options, strips, n_blades, omega, flight, observers):
     state = RotorState(omega, flight[0], AIR, flight[1])
-    return rotor_self_noise(strips, n_blades, state, observers, BANDS, **options)
+    return rotor_self_noise(strips, n_blades, state, observers, BANDS, **dict(options))
+
+
+def hear(strips, n_blades=2, omega=440.0, flight=(0.0, 0.0), observers=OBSERVERS, **options):
+    return heard_with(tuple(options.items()), strips, n_blades, omega, flight, observers)
 
 
 def around(strips, n_azimuths):
