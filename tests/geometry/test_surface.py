@@ -18,6 +18,7 @@ from propmdao.geometry.surface import (
 from propmdao.propeller.airfoils.airfoil import naca4_from_name
 from propmdao.propeller.description import Propeller
 from propmdao.records.panels import Panels
+from propmdao.runtime.compilation import compiled
 
 R_OVER_R = np.array([0.2, 0.4, 0.6, 0.8, 1.0])
 
@@ -169,7 +170,7 @@ def test_sharp_trailing_edge_has_panels_without_area_and_finite_derivatives(
     def total(b: Blade) -> jax.Array:
         return (surface_panels(surface_nodes(b, span, 9)).vector_area ** 2).sum()
 
-    gradient = jax.grad(total)(blade)
+    gradient = compiled(jax.grad(total), optimisation=0)(blade)
     for name, slope in vars(gradient).items():
         assert slope is None or np.isfinite(slope).all(), name
 

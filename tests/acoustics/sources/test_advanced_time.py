@@ -126,7 +126,7 @@ def test_pulsating_body_in_uniform_motion(observer_velocity):
     np.testing.assert_allclose(product, reference, atol=2e-6 * np.ptp(reference))
 
 
-@partial(compiled, static_argnums=0, optimisation=0)
+@partial(compiled, static_argnums=(0,), optimisation=0)
 def derivatives(f, times):
     def first(t):
         return jax.jvp(f, (t,), (1.0,))[1]
