@@ -25,7 +25,13 @@ def loads(slow_flyer):
 
 
 @pytest.mark.parametrize(
-    ("lattice", "error"), [((4, 24), 0.12), ((12, 24), 0.009), ((8, 12), 0.002), ((8, 36), 0.001)]
+    ("lattice", "error"),
+    [
+        pytest.param((4, 24), 0.12, marks=pytest.mark.slow),
+        ((12, 24), 0.009),
+        ((8, 12), 0.002),
+        pytest.param((8, 36), 0.001, marks=pytest.mark.slow),
+    ],
 )
 def test_lattice(loads, lattice, error):
     np.testing.assert_allclose(loads(*lattice), loads(), rtol=error)

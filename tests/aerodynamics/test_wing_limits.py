@@ -3,6 +3,8 @@
 A wing along x in air from +z is a blade that does not turn: chord along -z, lift along -y or +y.
 """
 
+from functools import partial
+
 import jax.numpy as jnp
 import numpy as np
 import pytest
@@ -19,6 +21,7 @@ from propmdao.geometry.lattice import lattice_chord_fraction
 from propmdao.propeller.airfoils.airfoil import CHORD_FRACTION, naca4_camber_line
 from propmdao.records.air import Air
 from propmdao.records.states import RotorState
+from propmdao.runtime.compilation import compiled
 
 SPEED = 10.0
 DENSITY = 1.2
@@ -37,6 +40,7 @@ def wing_nodes(span, chord, alpha, n_chordwise, n_spanwise, camber=lambda x: 0.0
     return jnp.asarray(np.stack([x, y, z], axis=-1))
 
 
+@partial(compiled, optimisation=0)
 def wing_loads(nodes, span):
     """Circulation per strip, lift and drag, with a straight wake along the stream."""
     # The "radius" only scales the bound vortices' core; a unit is the chord of the long wing.

@@ -22,7 +22,10 @@ from propmdao.records.units import RAD_PER_S
 AIR, FLIGHT = Air(density=1.226, sound_speed=340.0), np.array([0.0, 0.0, 5.0])
 
 
-@pytest.mark.parametrize("rpm", [600, 1400, 2200])
+SLOW = [pytest.param(rpm, marks=pytest.mark.slow) for rpm in (600, 2200)]
+
+
+@pytest.mark.parametrize("rpm", [1400, *SLOW])
 @pytest.mark.parametrize(
     "record", ["const_vel_theta-45", "stationary_theta-45", "stationary_theta+0"]
 )

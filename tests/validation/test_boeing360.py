@@ -28,6 +28,7 @@ def test_files_are_written_byte_for_byte(folder: Path, tmp_path: Path):
         assert copy.read_bytes() == (folder / copy.name).read_bytes()
 
 
+@pytest.mark.slow
 @pytest.mark.filterwarnings("ignore:.*(broadband noise|octaveflag)")
 def test_histories_at_three_observers(folder: Path, drawn):
     (result,) = run_case(folder)

@@ -7,7 +7,9 @@ and a band that lies on a steep flank is off by more. Each band is two-sided aro
 from __future__ import annotations
 
 import csv
+from functools import partial
 
+import jax
 import jax.numpy as jnp
 import numpy as np
 import pytest
@@ -19,6 +21,7 @@ from propmdao.acoustics.broadband.self_noise import trailing_edge_noise
 from propmdao.acoustics.broadband.turbulent_spectra import SHAPE_A, SHAPE_B, amplitude_k1
 from propmdao.acoustics.levels.decibels import level_db
 from propmdao.records.air import Air
+from propmdao.runtime.compilation import compiled
 
 NOMINAL = np.array(
     [m * 10**k for k in range(2, 5) for m in (1, 1.25, 1.6, 2, 2.5, 3.15, 4, 5, 6.3, 8)]
@@ -40,13 +43,19 @@ def table(path):
 
 
 def levels(frequency, values, air, distance, trip):
-    section = Section(*(jnp.asarray(v) for v in values))
+    values = tuple(float(value) for value in values)
+    return jax.tree.map(np.asarray, traced_levels(frequency, values, air, distance, trip))
+
+
+@partial(compiled, static_argnames="trip", optimisation=0)
+def traced_levels(frequency, values, air, distance, trip):
+    section = Section(*values)
     layer = boundary_layer(
         section.chord, section.speed, section.angle_of_attack, air.kinematic_viscosity, trip
     )
     toward = radiation(0.0, 0.0, distance, section.speed / air.sound_speed)
     edge = trailing_edge_noise(frequency, section, layer, toward, air)
-    return {name: np.asarray(level_db(p)) for name, p in edge._asdict().items()}
+    return {name: level_db(p) for name, p in edge._asdict().items()}
 
 
 def test_table_d2(reference_data, drawn):

@@ -69,6 +69,7 @@ def heard():
     return {name: np.asarray(level_db(p[0] * narrow)) for name, p in vars(noise).items()}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("mechanism", "peak_db", "peak_hz", "low", "high"),
     [
@@ -87,6 +88,7 @@ def test_peaks(heard, mechanism, peak_db, peak_hz, low, high):
     assert abs(bands_off) < (1.5 if mechanism == "tip" else 0.5)
 
 
+@pytest.mark.slow
 def test_spectrum_of_the_boundary_layers(heard, drawn):
     read = {
         "pressure_side": (

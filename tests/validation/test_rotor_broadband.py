@@ -122,6 +122,7 @@ def test_level_together_is_within_two_decibels(hover, measured):
     assert np.all(np.abs(off) < 2.0)
 
 
+@pytest.mark.slow
 def test_tripped_boundary_layers_make_up_for_missing_thrust(strips, measured):
     # Nobody tripped the blades; tripped ones would be louder where the measured thrust is met.
     found = error(of_strips(strips, trip="heavy"), measured)
@@ -129,6 +130,7 @@ def test_tripped_boundary_layers_make_up_for_missing_thrust(strips, measured):
     assert 4.5 < found[1] < 5.3
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("degrees", "low", "high"), [(-1.0, -2.9, -1.8), (1.0, 2.0, 3.2)])
 def test_a_degree_of_angle_from_zero_lift_is_worth_two_and_a_half_decibels(
     strips, degrees, low, high
@@ -139,6 +141,7 @@ def test_a_degree_of_angle_from_zero_lift_is_worth_two_and_a_half_decibels(
     assert np.all((low < change.mean(axis=1)) & (change.mean(axis=1) < high))
 
 
+@pytest.mark.slow
 def test_geometric_angle_from_zero_lift_is_too_loud(hover, strips, measured):
     # Where boundary layers take lift away, the angle at which a thin section of the same camber
     # would stand is larger than that at which it has the lift.

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import dataclasses
+from functools import partial
 
 import jax
 import jax.numpy as jnp
 import numpy as np
 import pytest
-from jax.test_util import check_grads
 
 from propmdao.acoustics.broadband.boundary_layer import boundary_layer
 from propmdao.acoustics.broadband.directivity import Radiation, moving_radiation, radiation
@@ -19,12 +19,14 @@ from propmdao.acoustics.broadband.self_noise import (
 )
 from propmdao.acoustics.levels.decibels import level_db
 from propmdao.records.air import Air
+from propmdao.runtime.compilation import compiled
 
 C, NU = 340.0, 1.5e-5
 AIR = Air(density=1.2, sound_speed=C, dynamic_viscosity=1.2 * NU)
 BANDS = third_octave_centers(200, 20e3)
 
 
+@partial(compiled, static_argnames="trip", optimisation=0)
 def noise(section, trip="none", sight=(0.3, 0.2, 1.0), layer=None, bands=BANDS):
     if layer is None:
         layer = boundary_layer(section.chord, section.speed, section.angle_of_attack, NU, trip)
@@ -128,48 +130,65 @@ def test_stall_leaves_only_separation(section):
 
 def test_nothing_jumps_over_angle_speed_and_edge_thickness(section):
     # Half the step, half the change, wherever it is heard: a jump would stay.
-    def largest_step(name, values):
-        s = section(**{name: values})
-        s = dataclasses.replace(s, **{k: v[:, None] for k, v in s.__dict__.items() if v.ndim})
-        level = jax.jit(lambda s: level_db(sum(noise(s, bands=BANDS[2::6]))))(s)
-        return np.abs(np.diff(np.asarray(level), axis=0)).max()
-
+    n = 3001
     for name, values in (
-        ("degrees", np.linspace(0, 30, 3001)),
-        ("speed", np.geomspace(5, 200, 2001)),
-        ("edge", np.geomspace(1e-6, 3e-3, 2001)),
+        ("degrees", np.linspace(0, 30, n)),
+        ("speed", np.geomspace(5, 200, n)),
+        ("edge", np.geomspace(1e-6, 3e-3, n)),
     ):
-        coarse, fine = largest_step(name, values[::2]), largest_step(name, values)
+        s = jax.tree.map(lambda q: jnp.broadcast_to(q, n)[:, None], section(**{name: values}))
+        level = np.asarray(level_db(sum(noise(s, bands=BANDS[2::6]))))
+        coarse, fine = (np.abs(np.diff(q, axis=0)).max() for q in (level[::2], level))
         assert fine < 0.55 * coarse, (name, coarse, fine)
+
+
+@partial(compiled, optimisation=0)
+def with_derivatives(section, way, weights):
+    """Logarithm of all mechanisms, its derivative along a way, and the weighted sum's by all."""
+
+    def total(section):
+        return jnp.log10(sum(noise(section)))
+
+    value, forward = jax.jvp(total, (section,), (way,))
+    return value, forward, jax.vjp(total, section)[1](weights)[0]
 
 
 @pytest.mark.parametrize("degrees", [0.0, 5.0, 7.0])
 def test_derivatives_are_those_of_the_values(section, degrees):
-    s = section(degrees=degrees)
-
-    def total(chord, speed, angle, thickness):
-        changed = dataclasses.replace(
-            s, chord=chord, speed=speed, angle_of_attack=angle, trailing_edge_thickness=thickness
-        )
-        return jnp.log10(sum(noise(changed)))
-
-    values = (s.chord, s.speed, s.angle_of_attack, 1e3 * s.trailing_edge_thickness)
-    check_grads(
-        lambda c, u, a, h: total(c, u, a, h / 1e3), values, order=1, eps=1e-7, rtol=2e-3, atol=2e-3
+    s, rng = section(degrees=degrees), np.random.default_rng(0)
+    random = iter(rng.normal(size=4))
+    # By chord, speed, angle and a thousand thicknesses of the edge.
+    way = dataclasses.replace(
+        jax.tree.map(jnp.zeros_like, s),
+        chord=next(random),
+        speed=next(random),
+        angle_of_attack=next(random),
+        trailing_edge_thickness=1e-3 * next(random),
     )
+    weights, eps = rng.normal(size=BANDS.size), 1e-7
+    ends = [
+        with_derivatives(jax.tree.map(lambda q, d, e=e: q + e * d, s, way), way, weights)[0]
+        for e in (0.5 * eps, -0.5 * eps)
+    ]
+    _, forward, slopes = with_derivatives(s, way, weights)
+    np.testing.assert_allclose(forward, (ends[0] - ends[1]) / eps, rtol=2e-3, atol=2e-3)
+    along = sum(jax.tree.leaves(jax.tree.map(lambda g, d: float(g * d), slopes, way)))
+    assert along == pytest.approx(float(weights @ forward), rel=1e-9)
+
+
+@partial(compiled, optimisation=0)
+@jax.value_and_grad
+def with_slopes(section):
+    """Level of all mechanisms and its derivatives."""
+    vortex = tip_noise(BANDS, section, Radiation(high=1.0, low=1.0), AIR)
+    return jnp.sum(level_db(sum(noise(section)) + vortex))
 
 
 @pytest.mark.parametrize(
     "changes", [{"degrees": 0.0}, {"speed": 0.0}, {"chord": 0.0}, {"edge": 0.0}, {"span": 0.0}]
 )
 def test_derivatives_are_finite_where_nothing_is_left(section, changes):
-    s = section(**changes)
-
-    def total(changed):
-        vortex = tip_noise(BANDS, changed, Radiation(high=1.0, low=1.0), AIR)
-        return jnp.sum(level_db(sum(noise(changed)) + vortex))
-
-    value, slopes = jax.value_and_grad(total)(s)
+    value, slopes = with_slopes(section(**changes))
     assert np.isfinite(value)
     assert all(np.isfinite(slope) for slope in jax.tree.leaves(slopes))
 

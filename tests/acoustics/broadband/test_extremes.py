@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import itertools
+from functools import partial
 
 import jax
 import jax.numpy as jnp
@@ -30,6 +31,7 @@ from propmdao.propeller.airfoils.airfoil import CHORD_FRACTION, naca4_thickness
 from propmdao.propeller.description import Propeller
 from propmdao.records.air import Air
 from propmdao.records.states import RotorState
+from propmdao.runtime.compilation import compiled
 
 AIR = Air()
 BANDS = third_octave_centers(50, 20e3)[::3]
@@ -45,7 +47,10 @@ def levels(section, sight=(0.3, 0.2, 1.0), trip="none", tip="rounded"):
     return level_db(jnp.stack([*edge, tip_noise(BANDS, section, toward, AIR, tip)]))
 
 
-@pytest.mark.parametrize(("trip", "tip"), [("none", "rounded"), ("heavy", "square")])
+@pytest.mark.parametrize(
+    ("trip", "tip"),
+    [("none", "rounded"), pytest.param("heavy", "square", marks=pytest.mark.slow)],
+)
 def test_levels_and_derivatives_are_finite_at_every_corner(trip, tip):
     """No chord, span, speed, thickness; stall, steep edges; observers in line with the section."""
     corners = np.array(
@@ -67,7 +72,8 @@ def test_levels_and_derivatives_are_finite_at_every_corner(trip, tip):
         section = Section(chord, span, speed, angle, edge * chord, edge_angle)
         return jnp.sum(levels(section, sight, trip, tip))
 
-    both = jax.jit(jax.vmap(jax.value_and_grad(total, argnums=(0, 1)), in_axes=(0, None)))
+    with_slopes = jax.vmap(jax.value_and_grad(total, argnums=(0, 1)), in_axes=(0, None))
+    both = compiled(with_slopes, optimisation=0)
     for sight in sights:
         value, slopes = both(jnp.asarray(corners), tuple(jnp.asarray(q) for q in sight))
         assert np.isfinite(value).all()
@@ -127,7 +133,8 @@ def rounded(radius_over_chord):
 )
 def test_nothing_jumps_over_thickness_and_rounding(shape, positions):
     """Half the step, half the change: a jump would stay. Derivatives are those of the values."""
-    total = jax.jit(jax.vmap(jax.value_and_grad(lambda q: bluntness_of(shape(q)))))
+    with_slopes = jax.vmap(jax.value_and_grad(lambda q: bluntness_of(shape(q))))
+    total = compiled(with_slopes, optimisation=0)
     value, slope = (np.asarray(q) for q in total(jnp.asarray(positions)))
     assert np.isfinite(value).all() and np.isfinite(slope).all()
     fine, coarse = np.abs(np.diff(value)), np.abs(np.diff(value[::2]))
@@ -137,6 +144,7 @@ def test_nothing_jumps_over_thickness_and_rounding(shape, positions):
     np.testing.assert_allclose(np.gradient(value, positions), slope, atol=0.05 * steepest)
 
 
+@partial(compiled, optimisation=0)
 def bluntness_of(thickness):
     """Level of the mechanism that knows of the edge, all bands together."""
     bands = levels(section_of(thickness))[4]
@@ -161,5 +169,5 @@ def test_trailing_edges_that_move_faster_than_sound_are_finite(strips):
         observer = np.array([[0.5, 0.0, -0.5]])
         return jnp.sum(level_db(rotor_self_noise(wide, 2, turning, observer, BANDS).total))
 
-    value, slope = jax.value_and_grad(noise)(state.rotation_speed)
+    value, slope = compiled(jax.value_and_grad(noise), optimisation=0)(state.rotation_speed)
     assert np.isfinite(value) and np.isfinite(slope)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+from functools import partial
 
 import jax
 import jax.numpy as jnp
@@ -17,6 +18,7 @@ from propmdao.acoustics.kinematics.observers import arc
 from propmdao.acoustics.levels.decibels import level_db
 from propmdao.records.air import Air
 from propmdao.records.states import RotorState
+from propmdao.runtime.compilation import compiled
 
 C, NU = 340.0, 1.5e-5
 AIR = Air(density=1.0, sound_speed=C, dynamic_viscosity=NU)
@@ -24,9 +26,14 @@ BANDS = third_octave_centers(315, 20e3)
 OBSERVERS = arc(1.5, [-45.0, 10.0])
 
 
-def hear(strips, n_blades=2, omega=440.0, flight=(0.0, 0.0), observers=OBSERVERS, **options):
+@partial(compiled, static_argnames=("n_blades", "options"), optimisation=0)
+def heard_with(options, strips, n_blades, omega, flight, observers):
     state = RotorState(omega, flight[0], AIR, flight[1])
-    return rotor_self_noise(strips, n_blades, state, observers, BANDS, **options)
+    return rotor_self_noise(strips, n_blades, state, observers, BANDS, **dict(options))
+
+
+def hear(strips, n_blades=2, omega=440.0, flight=(0.0, 0.0), observers=OBSERVERS, **options):
+    return heard_with(tuple(options.items()), strips, n_blades, omega, flight, observers)
 
 
 def around(strips, n_azimuths):
@@ -126,9 +133,10 @@ def test_tip_vortex_knows_the_section_at_096_of_the_radius(strips):
         )
         return StripFlow(jnp.stack([r, 0 * r, 0 * r], axis=1), *directions, section)
 
-    for n in (40, 160):
-        assert float(tip_section(blade(n)).angle_of_attack) == pytest.approx(0.096, rel=1e-12)
-    coarse, fine = (level_db(hear(blade(n)).tip) for n in (40, 160))
+    blades = [blade(n) for n in (40, 160)]
+    for each in blades:
+        assert float(tip_section(each).angle_of_attack) == pytest.approx(0.096, rel=1e-12)
+    coarse, fine = (level_db(hear(each).tip) for each in blades)
     np.testing.assert_allclose(coarse, fine, atol=0.2)  # that the last strip's middle moves
 
 
@@ -138,35 +146,43 @@ def test_tip_vortex_of_flow_that_changes_over_the_turn(strips):
     np.testing.assert_allclose(got, jnp.tile(tip_section(strips).angle_of_attack, 8), rtol=1e-12)
 
 
-def test_standstill_is_silent_and_differentiable(strips):
-    still = dataclasses.replace(strips.section, speed=jnp.zeros(6))
+@pytest.fixture(scope="module")
+def loudness(strips):
+    """Level by sections that change over the turn, rotation and flight, and its derivatives."""
 
-    def loudness(section, omega):
-        heard = hear(dataclasses.replace(strips, section=section), omega=omega)
+    def loudness(section, omega, flight):
+        heard = hear(dataclasses.replace(strips, section=section), omega=omega, flight=flight)
         return jnp.sum(level_db(heard.total))
 
-    value, slopes = jax.value_and_grad(loudness, argnums=(0, 1))(still, 0.0)
+    return compiled(jax.value_and_grad(loudness, argnums=(0, 1, 2)), optimisation=0)
+
+
+def test_standstill_is_silent_and_differentiable(strips, loudness):
+    section = around(strips, 24).section
+    still = dataclasses.replace(section, speed=jnp.zeros((24, 6)))
+    value, slopes = loudness(still, 0.0, (0.0, 0.0))
     assert float(value) < -195 * BANDS.size * len(OBSERVERS)
     assert all(np.isfinite(slope).all() for slope in jax.tree.leaves(slopes))
 
 
-def test_derivative_through_the_rotor(strips):
+def test_derivative_through_the_rotor(strips, loudness):
     """At an incidence, with flow that changes over the turn."""
     strips = around(strips, 24)
 
-    def loudness(angle, omega, incidence):
+    def at_angles(angle, omega, incidence):
         section = dataclasses.replace(strips.section, angle_of_attack=angle)
-        changed = dataclasses.replace(strips, section=section)
-        heard = hear(changed, omega=omega, flight=(25.0, incidence))
-        return jnp.sum(level_db(heard.total))
+        value, (by_section, by_omega, (_, by_incidence)) = loudness(
+            section, omega, (25.0, incidence)
+        )
+        return value, (by_section.angle_of_attack, by_omega, by_incidence)
 
     angle, step = strips.section.angle_of_attack, jnp.linspace(1.0, 2.0, 6)
     at = angle, 440.0, 1.2
-    slopes = jax.grad(loudness, argnums=(0, 1, 2))(*at)
+    slopes = at_angles(*at)[1]
     ways = ((1e-6 * step, 0.0, 0.0), 1e-4), ((0.0, 0.01, 0.0), 1e-3), ((0.0, 0.0, 1e-5), 1e-4)
     for way, tolerance in ways:
         forward, back = (
-            loudness(*(q + s * d for q, d in zip(at, way, strict=True))) for s in (1, -1)
+            at_angles(*(q + s * d for q, d in zip(at, way, strict=True)))[0] for s in (1, -1)
         )
         product = sum(jnp.sum(slope * d) for slope, d in zip(slopes, way, strict=True))
         assert float(product) == pytest.approx(0.5 * float(forward - back), rel=tolerance)

@@ -117,6 +117,7 @@ def test_a_band_is_somewhat_louder_than_its_middle(lost, louder):
 
 
 def test_absorption_has_derivatives():
+    @jax.jit
     def level(temperature, humidity, way):
         air = Air(temperature=temperature, relative_humidity=humidity, pressure=1e5)
         absorbed = absorb_tones(TONES, way * jnp.ones(2), air)

@@ -14,6 +14,7 @@ from propmdao.records.air import Air
 from propmdao.records.loads import PeriodicLoads, PointLoads
 from propmdao.records.panels import Panels
 from propmdao.records.states import RotorState
+from propmdao.runtime.compilation import compiled
 
 OBSERVERS = np.array([[1.2, 0.4, -1.3], [-0.5, 1.0, 0.7]])
 N_HARMONICS = 4
@@ -43,29 +44,38 @@ def rotor(slow_flyer):
     return slow_flyer.with_(rotation_speed=1300.0, speed=30.0)
 
 
+@pytest.fixture(scope="module")
+def forward(rotor):
+    """Tones, and their derivatives along a direction."""
+    function, _ = tone_function(rotor)
+    return compiled(lambda values, way: jax.jvp(function, values, way), optimisation=0)
+
+
 @pytest.mark.parametrize("index", range(7))
-def test_forward_derivative_is_the_central_difference(rotor, index):
-    function, values = tone_function(rotor)
+def test_forward_derivative_is_the_central_difference(rotor, forward, index):
+    _, values = tone_function(rotor)
     only = jax.tree.map(jnp.zeros_like, values)
     only = (*only[:index], direction(values, 1)[index], *only[index + 1 :])
-    actual = jax.jvp(function, values, only)[1]
+    actual = forward(values, only)[1]
     step = 1e-5
-    ahead = function(*jax.tree.map(lambda q, d: q + step * d, values, only))
-    back = function(*jax.tree.map(lambda q, d: q - step * d, values, only))
+    ahead, _ = forward(jax.tree.map(lambda q, d: q + step * d, values, only), only)
+    back, _ = forward(jax.tree.map(lambda q, d: q - step * d, values, only), only)
     for a, f, b in zip(actual, ahead, back, strict=True):
         difference = (f - b) / (2 * step)
         np.testing.assert_allclose(a, difference, rtol=1e-5, atol=1e-7 * np.abs(f).max())
 
 
-def test_reverse_derivative_is_the_transpose_of_the_forward_one(rotor):
+def test_reverse_derivative_is_the_transpose_of_the_forward_one(rotor, forward):
     function, values = tone_function(rotor)
     rng = np.random.default_rng(2)
     shape = (len(OBSERVERS), N_HARMONICS)
     weights = tuple(rng.normal(size=shape) + 1j * rng.normal(size=shape) for _ in range(2))
     d = direction(values, 3)
-    forward = jax.jvp(function, values, d)[1]
-    pull = jax.vjp(function, *values)[1](tuple(jnp.asarray(w) for w in weights))
-    one = sum(np.sum(w * f).real for w, f in zip(weights, forward, strict=True))
+    pull = compiled(lambda values, w: jax.vjp(function, *values)[1](w), optimisation=0)(
+        values, tuple(jnp.asarray(w) for w in weights)
+    )
+    along = forward(values, d)[1]
+    one = sum(np.sum(w * f).real for w, f in zip(weights, along, strict=True))
     other = sum(jax.tree.leaves(jax.tree.map(lambda g, q: jnp.sum(g * q), pull, d)))
     assert one == pytest.approx(float(other), rel=1e-11)
 
@@ -79,20 +89,27 @@ def test_jacobians_by_columns_and_by_rows_agree(rotor):
         return oaspl_db(thickness + loading)
 
     two = jnp.array([1300.0, 30.0])
-    forward, reverse = jax.jacfwd(levels)(two), jax.jacrev(levels)(two)
-    assert forward.shape == (2, 2)
-    np.testing.assert_allclose(forward, reverse, rtol=1e-9)
+    columns, rows = compiled(
+        lambda q: (jax.jacfwd(levels)(q), jax.jacrev(levels)(q)), optimisation=0
+    )(two)
+    assert columns.shape == (2, 2)
+    np.testing.assert_allclose(columns, rows, rtol=1e-9)
+
+
+@pytest.fixture(scope="module")
+def level_slopes(rotor):
+    """Derivatives of the level by everything."""
+    function, _ = tone_function(rotor)
+    return compiled(jax.grad(lambda q: oaspl_db(sum(function(*q))).sum()), optimisation=0)
 
 
 @pytest.mark.parametrize("speed", [0.0, 30.0])
-def test_a_rotor_at_rest_has_no_tones_and_finite_derivatives(rotor, speed):
-    function, values = tone_function(rotor.with_(rotation_speed=0.0, speed=speed))
-    for amplitude in function(*values):
+def test_a_rotor_at_rest_has_no_tones_and_finite_derivatives(rotor, forward, level_slopes, speed):
+    _, values = tone_function(rotor.with_(rotation_speed=0.0, speed=speed))
+    amplitudes, tangents = forward(values, direction(values, 4))
+    for amplitude in amplitudes:
         assert not np.any(amplitude)
-    gradient = jax.grad(lambda *q: oaspl_db(sum(function(*q))).sum(), argnums=tuple(range(7)))(
-        *values
-    )
-    tangents = jax.jvp(function, values, direction(values, 4))[1]
+    gradient = level_slopes(values)
     for leaf in jax.tree.leaves((gradient, tangents)):
         assert np.all(np.isfinite(leaf))
 

@@ -1,5 +1,7 @@
 """Flow read between a few points of each strip: polynomials exactly, far vortices closely."""
 
+from functools import partial
+
 import jax.numpy as jnp
 import numpy as np
 import pytest
@@ -7,8 +9,16 @@ import pytest
 from propmdao.aerodynamics.lattice.chord_lines import at_collocation, at_segments, chord_lines
 from propmdao.aerodynamics.lattice.rings import ring_segments, vortex_rings
 from propmdao.geometry.lattice import lattice_chord_fraction, lattice_span, strip_middle
+from propmdao.runtime.compilation import compiled
 
 NC, NS, CHORD = 8, 12, 0.2
+
+
+@partial(compiled, optimisation=0)
+def parts_of(nodes):
+    """Points of the strips, collocation points and both ends of all segments."""
+    rings, lines = vortex_rings(nodes), chord_lines(nodes)
+    return lines.points, rings.collocation, *ring_segments(rings)
 
 
 @pytest.fixture(scope="module")
@@ -17,10 +27,9 @@ def plate():
     span = lattice_span(0.2, NS)
     y = -CHORD * lattice_chord_fraction(NC)[:, None] + 0.0 * span
     nodes = jnp.asarray(np.stack([span + 0.0 * y, y, 0.0 * y], axis=-1))
-    rings, lines = vortex_rings(nodes), chord_lines(nodes)
-    start, end = ring_segments(rings)
+    lines, collocation, start, end = map(np.asarray, parts_of(nodes))
     middle = np.concatenate([np.tile(strip_middle(NS), NC), np.full(NC * (NS + 1), 0.5)])[:, None]
-    return lines.points, rings.collocation, (1.0 - middle) * start + middle * end
+    return lines, collocation, (1.0 - middle) * start + middle * end
 
 
 def test_a_polynomial_along_the_chord_is_read_exactly(plate):

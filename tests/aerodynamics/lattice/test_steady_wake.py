@@ -1,6 +1,7 @@
 """The wake of steady flow, read in three parts, against all of its segments at all points."""
 
-import jax
+from functools import partial
+
 import jax.numpy as jnp
 import numpy as np
 import pytest
@@ -23,6 +24,7 @@ from propmdao.aerodynamics.solutions import axial
 from propmdao.aerodynamics.solutions.lattice_loads import axial_onset, loads_with_wake
 from propmdao.aerodynamics.vortices.cores import core_radius, middles
 from propmdao.aerodynamics.wakes.helical import helical_wake
+from propmdao.runtime.compilation import compiled
 
 
 def wake_of(flow, w):
@@ -32,7 +34,7 @@ def wake_of(flow, w):
     return nodes, core
 
 
-@jax.jit
+@partial(compiled, optimisation=0)
 def both(flow, w):
     """Loads in a wake that is read, and in the same one exactly."""
     nodes, core = wake_of(flow, w)
@@ -46,7 +48,7 @@ def both(flow, w):
 
 def test_wake_that_is_read_gives_the_loads_of_all_its_segments(slow_flyer):
     case = slow_flyer.case(nodes=slow_flyer.nodes(8, 24))
-    prepared = jax.jit(axial.flow_at)(case)
+    prepared = compiled(axial.flow_at, optimisation=0)(case)
     for speed in (0.0, 8.0, 16.0):
         flow = axial.AxialFlow(
             slow_flyer.case(440.0, speed, nodes=case.rotor.nodes).in_floats(),
@@ -59,37 +61,40 @@ def test_wake_that_is_read_gives_the_loads_of_all_its_segments(slow_flyer):
         assert (np.abs(read - exact) > 0.0).all()
 
 
-@pytest.mark.parametrize(("nc", "ns"), [(4, 20), (6, 8)])
-def test_few_panels_leave_less_to_read(slow_flyer, nc, ns):
-    flow = axial.flow_at(slow_flyer.case(nodes=slow_flyer.nodes(nc, ns)))
+@partial(compiled, optimisation=0)
+def in_parts(case):
+    """The wake read in three parts, and the influence of all of it.
+
+    Few panels are read nowhere: influence at all points. Else at the lines, without the filaments
+    that act everywhere, and with what coarse reading leaves.
+    """
+    flow = axial.flow_at(case)
     nodes, core = wake_of(flow, 3.0)
     lattice, wake = flow.lattice, flow.case.wake
     read = steady_wake(lattice.points, lattice.lines, nodes, core, (wake.n_near, wake.n_turn))
-    assert (read.at_lines is None) == (nc < 6)
-    if nc < 6:
-        exact = wake_influence(lattice.points, nodes, core)
-        np.testing.assert_array_equal(read.at_points, exact)
-    else:
-        # All filaments act on the lines, but those that act everywhere.
-        all_of_it = wake_influence(lattice.lines.points, nodes, core)
-        near = wake_influence(
-            lattice.lines.points, nodes[:, :1, : wake.n_near + 1], core[: wake.n_near]
-        )
-        np.testing.assert_allclose(read.at_lines, all_of_it - near, rtol=1e-9, atol=1e-9)
-        left = left_by_coarse_reading(lattice.lines, nodes, core, wake.n_turn)
-        np.testing.assert_array_equal(left, 0.0)
-
-
-def test_what_coarse_reading_leaves_is_the_difference(slow_flyer):
-    flow = axial.flow_at(slow_flyer.case(nodes=slow_flyer.nodes(6, 16)))
-    nodes, core = wake_of(flow, 3.0)
-    lattice, wake = flow.lattice, flow.case.wake
-    read = steady_wake(lattice.points, lattice.lines, nodes, core, (wake.n_near, wake.n_turn))
+    if read.at_lines is None:
+        return read, wake_influence(lattice.points, nodes, core), None
     left = left_by_coarse_reading(lattice.lines, nodes, core, wake.n_turn)
     near = wake_influence(
         lattice.lines.points, nodes[:, :1, : wake.n_near + 1], core[: wake.n_near]
     )
-    exact = wake_influence(lattice.lines.points, nodes, core) - near
+    return read, wake_influence(lattice.lines.points, nodes, core) - near, left
+
+
+@pytest.mark.parametrize(("nc", "ns"), [(4, 20), (6, 8)])
+def test_few_panels_leave_less_to_read(slow_flyer, nc, ns):
+    read, exact, left = in_parts(slow_flyer.case(nodes=slow_flyer.nodes(nc, ns)))
+    assert (read.at_lines is None) == (nc < 6)
+    if nc < 6:
+        np.testing.assert_array_equal(read.at_points, exact)
+    else:
+        # All filaments act on the lines, but those that act everywhere.
+        np.testing.assert_allclose(read.at_lines, exact, rtol=1e-9, atol=1e-9)
+        np.testing.assert_array_equal(left, 0.0)
+
+
+def test_what_coarse_reading_leaves_is_the_difference(slow_flyer):
+    read, exact, left = in_parts(slow_flyer.case(nodes=slow_flyer.nodes(6, 16)))
     np.testing.assert_allclose(read.at_lines - left, exact, rtol=1e-9, atol=1e-9)
     assert 0.0 < np.abs(left).max() < 0.1 * np.abs(exact).max()
 

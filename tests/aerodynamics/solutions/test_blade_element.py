@@ -19,6 +19,7 @@ from propmdao.aerodynamics.trim import Bounds, solve_for_thrust
 from propmdao.geometry.lattice import strip_interpolation
 from propmdao.records.air import Air
 from propmdao.records.states import RotorState
+from propmdao.runtime.compilation import compiled
 
 OMEGA, DENSITY = 440.0, 1.225
 N_SPANWISE = 6
@@ -64,26 +65,31 @@ def test_ideal_twist_in_hover_has_the_closed_form():
     assert_allclose(loads.strip_thrust[inside], expected[inside], rtol=5e-3)
 
 
+@partial(compiled, optimisation=0)
+def annuli_of(case):
+    """Inflow angle, radius, width and edges of the annuli."""
+    flow = blade_element.flow_at(case)
+    ends = flow.inner[0], flow.outer[-1]
+    return blade_element.inflow_angles(flow), flow.strips.radius, flow.outer - flow.inner, ends
+
+
 @pytest.mark.parametrize("speed", [0.0, 8.0, 16.0])
 def test_annuli_keep_their_momentum(slow_flyer, speed):
     """Thrust and torque are the momentum and the swirl that the air of the annuli takes up."""
-    flow = blade_element.flow_at(viscous(slow_flyer, speed))
-    phi = blade_element.inflow_angles(flow)
-    loads = blade_element.solve(flow.case)
-    r, dr = flow.strips.radius, flow.outer - flow.inner
+    case = viscous(slow_flyer, speed)
+    phi, r, dr, (root, tip) = jax.tree.map(np.asarray, annuli_of(case))
+    loads = jax.tree.map(np.asarray, blade_element.solve(case))
     w = loads.sections.relative_speed  # no sweep: the air lies in the plane of the sections
-    root, tip = flow.inner[0], flow.outer[-1]
-    sine = jnp.abs(jnp.sin(phi))
-    loss = (2.0 / jnp.pi) ** 2 * (
-        jnp.arccos(jnp.exp(-(tip - r) / (r * sine)))
-        * jnp.arccos(jnp.exp(-(r - root) / (root * sine)))
+    sine = np.abs(np.sin(phi))
+    loss = (2.0 / np.pi) ** 2 * (
+        np.arccos(np.exp(-(tip - r) / (r * sine))) * np.arccos(np.exp(-(r - root) / (root * sine)))
     )
-    flux = 4.0 * jnp.pi * DENSITY * loss * r * dr * w * sine
-    assert_allclose(2.0 * loads.strip_thrust, flux * (w * jnp.sin(phi) - speed), rtol=2e-3)
-    swirl = OMEGA * r - w * jnp.cos(phi)
+    flux = 4.0 * np.pi * DENSITY * loss * r * dr * w * sine
+    assert_allclose(2.0 * loads.strip_thrust, flux * (w * np.sin(phi) - speed), rtol=2e-3)
+    swirl = OMEGA * r - w * np.cos(phi)
     assert_allclose(2.0 * loads.strip_torque, flux * swirl * r, rtol=2e-3, atol=2e-5)
     assert bool(loads.converged)
-    assert float(jnp.abs(loads.sections.residual).max()) < 1e-9
+    assert float(np.abs(loads.sections.residual).max()) < 1e-9
 
 
 def test_thrust_falls_evenly_from_hover_to_windmill(slow_flyer):
@@ -104,30 +110,48 @@ def test_thrust_falls_evenly_from_hover_to_windmill(slow_flyer):
     assert np.abs(np.diff(thrust, n=2)).max() < 0.02 * float(thrust[0])
 
 
-def test_derivatives(slow_flyer):
-    """Thrust and torque by speed, rotation and nodes are those of differences."""
+@pytest.fixture(scope="module")
+def responses(slow_flyer):
+    """Thrust, torque and an angle by speed, rotation and nodes."""
     case = viscous(slow_flyer, 8.0)
     direction = jnp.asarray(np.random.default_rng(3).standard_normal(case.rotor.nodes.shape))
 
-    def responses(case, x):
+    def responses(x):
         nodes = case.rotor.nodes + 1e-3 * x[2] * direction
         rotor = dataclasses.replace(case.rotor, nodes=nodes)
         state = dataclasses.replace(case.state, rotation_speed=OMEGA + x[0], speed=8.0 + x[1])
         loads = blade_element.solve(dataclasses.replace(case, rotor=rotor, state=state))
         return jnp.stack([loads.thrust, loads.torque, loads.sections.angle_of_attack[3]])
 
-    zero, way, step = jnp.zeros(3), jnp.asarray([0.7, -0.4, 1.1]), 1e-5
-    weights = jnp.asarray([1.0, 60.0, 30.0])  # of numbers of one size
+    return responses
 
-    @jax.jit
-    def slopes(case, x):
-        forward = jax.jvp(partial(responses, case), (x,), (way,))[1]
-        return forward, jax.grad(lambda y: weights @ responses(case, y))(x)
 
-    (forward, gradient), at = slopes(case, zero), partial(jax.jit(responses), case)
-    differences = (at(zero + step * way) - at(zero - step * way)) / (2.0 * step)
-    assert_allclose(forward, differences, rtol=1e-6, atol=1e-9)
-    assert_allclose(gradient @ way, weights @ forward, rtol=1e-9)
+WAY, WEIGHTS = np.array([0.7, -0.4, 1.1]), np.array([1.0, 60.0, 30.0])  # of numbers of one size
+
+
+@pytest.fixture(scope="module")
+def with_rows(responses):
+    """Responses and the derivatives of each."""
+
+    def with_rows(x):
+        values, back = jax.vjp(responses, x)
+        return values, jax.vmap(back)(jnp.eye(3))[0]
+
+    return compiled(with_rows, optimisation=0)
+
+
+def test_derivatives_are_those_of_differences(with_rows):
+    step = 1e-5
+    ends = [with_rows(sign * step * WAY)[0] for sign in (1.0, -1.0)]
+    differences = (ends[0] - ends[1]) / (2.0 * step)
+    assert_allclose(with_rows(np.zeros(3))[1] @ WAY, differences, rtol=1e-6, atol=1e-9)
+
+
+@pytest.mark.slow
+def test_derivatives_forward_are_the_same(responses, with_rows):
+    forward = jax.jit(lambda x: jax.jvp(responses, (x,), (jnp.asarray(WAY),))[1])(jnp.zeros(3))
+    along = with_rows(np.zeros(3))[1] @ WAY
+    assert_allclose(WEIGHTS @ along, WEIGHTS @ forward, rtol=1e-9)
 
 
 def test_trimmed(slow_flyer):

@@ -1,8 +1,8 @@
 """What the wake of a period induces: against sums over all its segments at every point."""
 
 import dataclasses
+from functools import partial
 
-import jax
 import jax.numpy as jnp
 import numpy as np
 import pytest
@@ -21,15 +21,32 @@ from propmdao.aerodynamics.vortices.cores import middles
 from propmdao.aerodynamics.wakes.ages import wake_azimuths
 from propmdao.aerodynamics.wakes.sheets import Sheets
 from propmdao.records.wake_law import WakeGrid
+from propmdao.runtime.compilation import compiled
 
 B, NC, NS, CORE, NEAR = 2, 4, 8, 1e-3, 12
 AGES = wake_azimuths(WakeGrid(1.25, 1.0, 1.4, 20.0))
 DELAY = jnp.linspace(0.0, 0.05, NS)
 
 
+lattice_of = compiled(period_lattice, optimisation=0)
+
+
+velocities_of = compiled(segment_velocities, optimisation=0)
+normalwash_by = compiled(wake_normalwash, optimisation=0)
+velocities_by = compiled(wake_velocities, optimisation=0)
+
+
+@partial(compiled, static_argnums=(2, 3), optimisation=0)
+def steady_flow(lattice, sheets, rings, n_panels, circulation):
+    """Normalwash and velocities on segments of the steady lattice's wake."""
+    steady = steady_wake(lattice.points, lattice.lines, sheets.nodes, sheets.trailing_core, rings)
+    normalwash = circulation @ steady.normalwash(lattice.rings.normal, lattice.lines)
+    return normalwash, steady.velocities(circulation, n_panels)
+
+
 @pytest.fixture(scope="module")
 def blade(slow_flyer):
-    return period_lattice(RotorGeometry(slow_flyer.nodes(NC, NS), slow_flyer.radius, B))
+    return lattice_of(RotorGeometry(slow_flyer.nodes(NC, NS), slow_flyer.radius, B))
 
 
 def circulation_of(n):
@@ -83,7 +100,7 @@ def summed(points, wake, circulation, numbers):
             )
             for start, end, strength in ends:
                 start, end = (jnp.asarray(x.reshape(1, -1, 3)) for x in (start, end))
-                unit = segment_velocities(points, start, end, core)
+                unit = velocities_of(points, start, end, core)
                 velocity = velocity + np.einsum("csp,s->cp", unit, strength.ravel())
         total.append(velocity)
     return np.array(total)
@@ -91,8 +108,8 @@ def summed(points, wake, circulation, numbers):
 
 def by_lattice(lattice, wake, circulation):
     """Normalwash at the collocation points, and velocity at the segments, by the solution's way."""
-    folded = np.einsum("kqsp,qs->kp", jax.jit(wake_normalwash)(lattice, wake), circulation)
-    return folded, np.asarray(jax.jit(wake_velocities)(lattice, wake, jnp.asarray(circulation)))
+    folded = np.einsum("kqsp,qs->kp", normalwash_by(lattice, wake), circulation)
+    return folded, np.asarray(velocities_by(lattice, wake, jnp.asarray(circulation)))
 
 
 @pytest.mark.parametrize(
@@ -129,15 +146,15 @@ def test_the_wake_of_axial_flight_is_that_of_the_steady_lattice(slow_flyer):
     # Fine enough that what is older than a turn is read more coarsely there.
     n, nc, ns, rings = 4, 6, 16, (NEAR, AGES.size - 5)
     nodes = slow_flyer.nodes(nc, ns)
-    lattice = period_lattice(RotorGeometry(nodes, slow_flyer.radius, B))
+    lattice = lattice_of(RotorGeometry(nodes, slow_flyer.radius, B))
     wake = dataclasses.replace(
         wake_of(lattice, n, False, NEAR, 0.2), delay=jnp.zeros(ns), n_turn=rings[1]
     )
     circulation = np.broadcast_to(np.sin(np.pi * (np.arange(ns) + 0.5) / ns), (n, ns))
     geometry, sheets = lattice.lattice, wake.sheets
-    steady = steady_wake(geometry.points, geometry.lines, sheets.nodes, sheets.trailing_core, rings)
-    normalwash = circulation[0] @ steady.normalwash(geometry.rings.normal, geometry.lines)
-    on_segments = steady.velocities(jnp.asarray(circulation[0]), nc * ns)
+    normalwash, on_segments = steady_flow(
+        geometry, sheets, rings, nc * ns, jnp.asarray(circulation[0])
+    )
     folded, velocity = by_lattice(lattice, wake, circulation)
     for k in range(n):
         for read, expected in ((folded[k], normalwash), (velocity[k], on_segments)):

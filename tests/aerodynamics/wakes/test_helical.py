@@ -1,5 +1,7 @@
 """Momentum theory and the shape of the wake in their limits."""
 
+from functools import partial
+
 import jax.numpy as jnp
 import numpy as np
 import pytest
@@ -11,19 +13,24 @@ from propmdao.aerodynamics.wakes.momentum import momentum_induced_velocity
 from propmdao.records.air import Air
 from propmdao.records.states import RotorState
 from propmdao.records.wake_law import WakeGrid, WakeLaw
+from propmdao.runtime.compilation import compiled
 
 RHO, RADIUS, OMEGA = 1.2, 0.15, 400.0
 AREA = np.pi * RADIUS**2
 TRAILING = jnp.array([[0.1, -0.02, 0.003]])
 
 
+momentum_velocity = compiled(momentum_induced_velocity, optimisation=0)
+
+
 def state_at(speed):
     return RotorState(OMEGA, speed, Air(density=RHO))
 
 
-def filaments(node, ages, n_blades, speed, induced):
+@partial(compiled, static_argnames=("n_blades", "law"), optimisation=0)
+def filaments(node, ages, n_blades, speed, induced, law=WakeLaw()):  # noqa: B008 - frozen
     """Wake of blades whose lattice does not matter."""
-    rotor, transport = RotorGeometry(node, RADIUS, n_blades), WakeTransport(WakeLaw(), ages)
+    rotor, transport = RotorGeometry(node, RADIUS, n_blades), WakeTransport(law, ages)
     return helical_wake(node, transport, rotor, state_at(speed), induced)
 
 
@@ -35,14 +42,14 @@ def wake_of(speed, induced, turns=30.0, n_blades=2):
 @pytest.mark.parametrize("speed", [0.0, 3.0, 12.0])
 def test_induced_velocity_satisfies_momentum(speed):
     thrust = 4.0
-    w = momentum_induced_velocity(thrust, state_at(speed), RADIUS)
+    w = momentum_velocity(thrust, state_at(speed), RADIUS)
     # The smooth floor under the discriminant, (0.005 of tip speed)^2, is left to be seen.
     assert 2 * RHO * AREA * w * (speed + w) == pytest.approx(thrust, rel=2e-4)
 
 
 def test_induced_velocity_stays_finite_and_smooth_beyond_the_windmilling_limit():
     thrust = jnp.linspace(-20.0, 0.0, 401)
-    w = momentum_induced_velocity(thrust, state_at(5.0), RADIUS)
+    w = momentum_velocity(thrust, state_at(5.0), RADIUS)
     assert (w > -2.5).all() and (np.diff(w) > 0).all()
 
 
@@ -111,11 +118,7 @@ def test_ages_start_at_the_blade_and_end_at_the_last_turn():
 
 def test_the_law_can_be_varied():
     ages = jnp.linspace(0.0, 4 * np.pi, 101)
-    rotor = RotorGeometry(TRAILING, RADIUS, 2)
-    deep, still = (
-        helical_wake(TRAILING, WakeTransport(WakeLaw(inside=k), ages), rotor, state_at(0.0), 5.0)
-        for k in (2.0, 0.0)
-    )
+    deep, still = (filaments(TRAILING, ages, 2, 0.0, 5.0, WakeLaw(inside=k)) for k in (2.0, 0.0))
     depth = -(deep - TRAILING[0])[0, 0, :, 2]
     np.testing.assert_allclose(depth, 10.0 * ages / OMEGA, rtol=1e-9)
     np.testing.assert_allclose(still[0, 0, :, 2], TRAILING[0, 2], rtol=1e-12)

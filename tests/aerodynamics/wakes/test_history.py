@@ -8,6 +8,7 @@ from propmdao.aerodynamics.vortices.cores import middles
 from propmdao.aerodynamics.wakes.ages import wake_azimuths
 from propmdao.aerodynamics.wakes.history import history_weights, shedding_delay
 from propmdao.records.wake_law import WakeGrid
+from propmdao.runtime.compilation import compiled
 
 N, B = 36, 3
 DELAY = jnp.array([0.0, 0.07])
@@ -16,7 +17,8 @@ AGES = jnp.asarray(wake_azimuths(WakeGrid(1.5, 0.25, 1.25, 10.0)))
 
 @pytest.fixture(scope="module")
 def weights():
-    return history_weights(AGES, DELAY, N, B)
+    weights = compiled(history_weights, static_argnums=(2, 3), optimisation=0)
+    return weights(AGES, DELAY, N, B)
 
 
 def test_constant_circulation_is_trailed_and_sheds_nothing(weights):

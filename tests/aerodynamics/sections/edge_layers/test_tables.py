@@ -1,5 +1,7 @@
 """Tables of boundary layers: against the report's NACA 0012, mirrored, smooth, complete."""
 
+from functools import partial
+
 import jax
 import jax.numpy as jnp
 import numpy as np
@@ -15,9 +17,23 @@ from propmdao.aerodynamics.sections.polars.shipped import SHIPPED, SHIPPED_TRIPP
 from propmdao.geometry.blade import Blade
 from propmdao.geometry.lattice import strip_interpolation
 from propmdao.records.models import FREE, Transition
+from propmdao.runtime.compilation import compiled
 
 R = np.array([0.2, 0.6, 1.0])
 NATURAL = Transition(9.0, FREE, FREE)
+
+
+sides_of = compiled(edge_sides, optimisation=0)
+
+
+fit_of = compiled(boundary_layer, static_argnums=(4,), optimisation=0)
+
+
+@partial(compiled, optimisation=0)
+def layer_in(table, degrees, reynolds):
+    angle = jnp.radians(jnp.full(2, degrees))
+    sides = edge_sides(table, angle, jnp.full(2, reynolds))
+    return layer_of_sections(1.0, angle, *sides)
 
 
 def blade_of(airfoil, **changes):
@@ -32,9 +48,7 @@ def table_of(propeller, transition):
 
 def layer_at(degrees, reynolds, transition, airfoil="naca0012"):
     """Layer of a section of 1 m chord, angle from zero lift that of a symmetric section."""
-    angle = jnp.radians(jnp.full(2, degrees))
-    sides = edge_sides(table_of(blade_of(airfoil), transition), angle, jnp.full(2, reynolds))
-    return layer_of_sections(1.0, angle, *sides)
+    return layer_in(table_of(blade_of(airfoil), transition), degrees, reynolds)
 
 
 @pytest.mark.parametrize("reynolds", [1e5, 2e5, 5e5, 1e6, 1.5e6])
@@ -42,7 +56,7 @@ def layer_at(degrees, reynolds, transition, airfoil="naca0012"):
 def test_forced_transition_is_the_light_trip_of_the_report(reynolds, degrees):
     # NASA RP-1218 measured a NACA 0012 with grit; its program takes 0.6 of that for a light trip.
     got = layer_at(degrees, reynolds, SHIPPED_TRIPPED)
-    fit = boundary_layer(1.0, reynolds, np.radians(degrees), 1.0, "light")
+    fit = fit_of(1.0, reynolds, np.radians(degrees), 1.0, "light")
     for name in ("displacement_suction", "displacement_pressure"):
         decibels = 10 * np.log10(getattr(got, name)[0] / getattr(fit, name))
         assert abs(float(decibels)) < 1.4, name
@@ -52,7 +66,7 @@ def test_forced_transition_is_the_light_trip_of_the_report(reynolds, degrees):
 @pytest.mark.parametrize("degrees", [0.0, 2.0, 4.0])
 def test_natural_transition_is_near_the_fits_where_the_suction_side_is_turbulent(reynolds, degrees):
     got = layer_at(degrees, reynolds, NATURAL)
-    fit = boundary_layer(1.0, reynolds, np.radians(degrees), 1.0)
+    fit = fit_of(1.0, reynolds, np.radians(degrees), 1.0, "none")
     decibels = 10 * np.log10(got.displacement_suction[0] / fit.displacement_suction)
     assert -2.2 < float(decibels) < 0.2
 
@@ -74,8 +88,8 @@ def test_a_section_upside_down_has_its_sides_exchanged():
         for sign in (1, -1)
     )
     angle, re = jnp.radians(jnp.array([3.0, -2.0])), jnp.array([8e4, 2e5])
-    upper, lower = edge_sides(upright, angle, re)
-    turned_upper, turned_lower = edge_sides(turned, -angle, re)
+    upper, lower = sides_of(upright, angle, re)
+    turned_upper, turned_lower = sides_of(turned, -angle, re)
     jax.tree.map(assert_allclose, (upper, lower), (turned_lower, turned_upper))
 
 
@@ -100,9 +114,9 @@ def test_a_turn_has_the_layers_of_its_azimuths():
     table = table_of(blade_of("naca4412"), Transition())
     angle = jnp.radians(jnp.array([[1.0, 2.0], [3.0, -4.0]]))
     re = jnp.array([[5e4, 8e4], [6e4, 0.0]])
-    together = edge_sides(table, angle, re)
+    together = sides_of(table, angle, re)
     for k in range(2):
-        alone = edge_sides(table, angle[k], re[k])
+        alone = sides_of(table, angle[k], re[k])
         jax.tree.map(lambda a, b, k=k: assert_allclose(a[k], b), together, alone)
 
 

@@ -23,6 +23,7 @@ from propmdao.records.air import Air
 from propmdao.records.fidelity import FreeWake, Marching
 from propmdao.records.states import RotorState
 from propmdao.records.wake_law import WakeGrid, WakeLaw
+from propmdao.runtime.compilation import compiled
 
 NC, NS, N = 2, 5, 12
 COARSE = wake_transport(WakeLaw(), WakeGrid(2.0, 2.0, 1.5, 40.0))
@@ -48,7 +49,7 @@ def rotor(slow_flyer):
 
 @pytest.fixture(scope="module")
 def tilted(rotor):
-    return march(rotor(70.0), SCHEDULE, snapshots=3)
+    return march(rotor(70.0, viscous=False), SCHEDULE, snapshots=3)
 
 
 def test_in_axial_flight_the_steady_solution_stays_what_it_is(rotor):
@@ -81,15 +82,18 @@ def test_older_wake_is_read_between_points_of_a_strip(rotor, slow_flyer):
     assert flow.parts.n_young <= flow.parts.n_close < flow.parts.n_near
     everywhere = dataclasses.replace(flow, parts=dataclasses.replace(flow.parts, n_close=None))
     state = march_start(flow, SCHEDULE)
-    read, exact = (advance(each, state, 0.3)[1] for each in (flow, everywhere))
+    step = compiled(lambda flow: advance(flow, state, 0.3)[1], optimisation=0)
+    read, exact = (step(each) for each in (flow, everywhere))
     # Chordwise segments lie between strips as coarse as what is under them: sums tell.
     total, expected = (loads.force.sum(axis=0) for loads in (read, exact))
     np.testing.assert_allclose(total, expected, atol=1e-3 * np.abs(expected).max())
     assert not np.array_equal(total, expected)
 
 
-def test_at_an_incidence_it_ends_in_the_periodic_solution(rotor, tilted):
-    period = periodic.solve(rotor(70.0))
+@pytest.mark.parametrize("viscous", [False, pytest.param(True, marks=pytest.mark.slow)])
+def test_at_an_incidence_it_ends_in_the_periodic_solution(rotor, tilted, viscous):
+    tilted = march(rotor(70.0), SCHEDULE) if viscous else tilted
+    period = periodic.solve(rotor(70.0, viscous))
     assert tilted.converged
     assert tilted.thrust == pytest.approx(float(period.thrust), rel=0.005)
     mean = float(jnp.linalg.norm(period.hub_force))
@@ -128,6 +132,7 @@ def test_a_free_wake_in_hover_contracts_and_descends(rotor):
     assert 1e-3 < abs(float(marched.thrust) / prescribed - 1.0) < 0.1
 
 
+@pytest.mark.slow
 def test_the_mirror_image_of_an_edgewise_rotor_thrusts_the_other_way_in_a_free_wake(rotor):
     schedule = dataclasses.replace(
         SCHEDULE, revolutions=1, wake_motion="free", free_wake=FreeWake(1.0, 0.05, 5, 30.0)

@@ -14,8 +14,8 @@ The march of a rotor is that of a wing with a straight wake.
 """
 
 import dataclasses
+from functools import partial
 
-import jax
 import jax.numpy as jnp
 import numpy as np
 
@@ -30,6 +30,7 @@ from propmdao.aerodynamics.wakes.sheets import Sheets, WakeParts, fewer_filament
 from propmdao.geometry.lattice import lattice_chord_fraction
 from propmdao.records.air import Air
 from propmdao.records.wake_law import WakeGrid
+from propmdao.runtime.compilation import compiled
 
 SPEED, DENSITY, CHORD, UPWASH = 10.0, 1.2, 1.0, 0.1
 SPAN, NC, NS = 400.0, 8, 11
@@ -48,6 +49,11 @@ def kuessner(s):
     return 1.0 - 0.5 * np.exp(-0.13 * s) - 0.5 * np.exp(-s)
 
 
+@partial(compiled, optimisation=0)
+def lattice_of(wing):
+    return marched_lattice(period_lattice(wing))
+
+
 def lift_after(half_chords_per_step, n_steps, gust_edge=None):
     """Lift per span in the middle of a long wing at each step, over the final one.
 
@@ -58,7 +64,7 @@ def lift_after(half_chords_per_step, n_steps, gust_edge=None):
     # Leading to trailing edge along -z, span along x: the suction side looks to -y.
     z = -CHORD * lattice_chord_fraction(NC)[:, None] + 0.0 * eta
     nodes = jnp.asarray(np.stack([0.5 * SPAN * eta + 0.0 * z, 0.0 * z, z], axis=-1))
-    lattice = marched_lattice(period_lattice(RotorGeometry(nodes, 1.0, 1)))
+    lattice = lattice_of(RotorGeometry(nodes, 1.0, 1))
     # Ages in chords of travel: fine at the trailing edge.
     ages = jnp.asarray(wake_azimuths(WakeGrid(1.0, 0.36, 1.2, 18.0))) * LENGTH / (2.0 * np.pi)
     edge = lattice.period.lattice.rings.corner[-1]
@@ -91,7 +97,7 @@ def lift_after(half_chords_per_step, n_steps, gust_edge=None):
         upwash = -UPWASH * jnp.clip(inside, 0.0, 1.0)
         return dataclasses.replace(onset, velocity=onset.velocity.at[:, 1].set(upwash))
 
-    @jax.jit
+    @partial(compiled, optimisation=0)
     def step(past, number):
         loads = step_loads(lattice, sheets, parts, lag, onset_at(number), past, medium)
         strips = jnp.concatenate([loads.circulation[None, :, -NS:], past.strips[:-1]])
