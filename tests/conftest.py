@@ -18,6 +18,7 @@ from propmdao.formats.wopwop.geometry_file import GeometryFile, write_geometry
 from propmdao.formats.wopwop.loading_file import LoadingFile, write_loading
 from propmdao.formats.wopwop.namelists.groups import write_namelists
 from propmdao.formats.wopwop.zones import Zone
+from propmdao.runtime import compilation
 
 # Read when OpenMDAO is imported, so set before any test module is.
 os.environ["OPENMDAO_REPORTS"] = "0"
@@ -26,16 +27,19 @@ os.environ.setdefault("MPLBACKEND", "Agg")
 VALIDATION = Path(__file__).parent / "validation"
 
 
-# What `propmdao.runtime.compilation` asks of XLA for its own programs: half the time to compile.
-# Tests compile many that are not propmdao's.
-_SOONER_COMPILED = "--xla_cpu_use_fusion_emitters=false"
+# Tests wait for XLA's compiler, not for what it makes: without optimisations they take three
+# quarters of the time. The other flag is what `propmdao.runtime.compilation` asks for; programs of
+# the tests' own have it, too.
+_SOON_COMPILED = "--xla_cpu_use_fusion_emitters=false --xla_backend_optimization_level=0"
 
 
 def pytest_configure() -> None:
-    """Compile the tests' own programs as propmdao's are, where this version of XLA can."""
+    """Compile without optimisation, where this version of XLA can."""
+    with_options = compilation._options
+    compilation._options = lambda _: with_options(0)
     if "XLA_FLAGS" in os.environ:  # the user's own, or those of the process that began this one
         return
-    settings = os.environ | {"XLA_FLAGS": _SOONER_COMPILED}
+    settings = os.environ | {"XLA_FLAGS": _SOON_COMPILED}
     starts = [sys.executable, "-c", "import jax; jax.devices()"]  # or aborts: it knows the flag not
     if subprocess.run(starts, env=settings, capture_output=True).returncode == 0:
         os.environ |= settings
