@@ -183,10 +183,11 @@ def solve_period_recambering(flow: PeriodFlow, laws: SectionLaws, start: Array) 
     def slope_of(trial: _Trial) -> Array:
         return _slope(fixed_flow, fixed_laws, trial.more_by_alpha)
 
+    def settled(trial: _Trial) -> Array:
+        return jnp.abs(weight * trial.missing).max() <= _TOLERANCE
+
     def unfinished(state: _Newton) -> Array:
-        largest = jnp.abs(weight * state.trial.missing).max()
-        attempts_left = state.n_trials < _MAX_STEPS * len(_FIRST_TIMES)
-        return attempts_left & ~(largest <= _TOLERANCE)
+        return (state.n_trials < _MAX_STEPS * len(_FIRST_TIMES)) & ~settled(state.trial)
 
     def step(state: _Newton) -> _Newton:
         last = state.trial
@@ -217,12 +218,10 @@ def solve_period_recambering(flow: PeriodFlow, laws: SectionLaws, start: Array) 
     motion = _by_motion(flow, laws)
     missing = lift - _held(flow, laws, before, more, motion)[0]
     newton = -linear_algebra.solve(slope, missing.ravel()).reshape(shape)
-    recambering = last.recambering + jnp.where(unfinished(end), 0.0, newton)
+    recambering = last.recambering + jnp.where(settled(last), newton, 0.0)
     alpha, lift = flow.angle_and_lift(recambering)
-    more, cd = (
-        more + last.more_by_alpha * (alpha - before),
-        cd + last.cd_by_alpha * (alpha - before),
-    )
+    more += last.more_by_alpha * (alpha - before)
+    cd += last.cd_by_alpha * (alpha - before)
     held, borrowed = _held(flow, laws, alpha, more, motion)
 
     def states_of(angle: Array, drag: Array) -> SectionStates:

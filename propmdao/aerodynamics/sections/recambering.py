@@ -169,7 +169,8 @@ def solve_recambering(flow: StripFlow, laws: SectionLaws) -> tuple[Array, Sectio
     settled = jnp.abs(best.missing).max() <= _TOLERANCE
     recambering = best.recambering + jnp.where(settled, newton, 0.0)
     end, lift = flow.angle_and_lift(recambering)
-    more, cd = more + best.more_by_alpha * (end - alpha), cd + best.cd_by_alpha * (end - alpha)
+    more += best.more_by_alpha * (end - alpha)
+    cd += best.cd_by_alpha * (end - alpha)
     near = laws.mean @ more
     held = laws.thin(end) + near
     return recambering, SectionStates(
