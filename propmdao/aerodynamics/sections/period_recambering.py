@@ -25,7 +25,7 @@ from jax import Array
 
 from propmdao.aerodynamics.lattice.strips import Strips
 from propmdao.aerodynamics.sections.laws import SectionLaws
-from propmdao.aerodynamics.sections.recambering import SectionStates
+from propmdao.aerodynamics.sections.recambering import SectionStates, Trial
 from propmdao.records.pytrees import record
 from propmdao.runtime import linear_algebra
 
@@ -95,24 +95,6 @@ def attached_share(tangential_share: Array) -> Array:
     return x * x * (3.0 - 2.0 * x)
 
 
-def unheld_period_states(flow: PeriodFlow) -> SectionStates:
-    """How the sections work without polars: with the lift of the lattice, and no drag.
-
-    Parameters
-    ----------
-    flow : PeriodFlow
-        Strips of the lattice at all azimuths.
-
-    Returns
-    -------
-    SectionStates
-        Flow of the sections, (n_azimuths, ns) each.
-    """
-    alpha, lift = flow.angle_and_lift(jnp.zeros_like(flow.circulation))
-    zero = jnp.zeros_like(lift)
-    return SectionStates(flow.relative_speed, alpha, lift, zero, zero, zero)
-
-
 class HeldPeriod(NamedTuple):
     """Recambering of the strips at all azimuths, and how the sections work with it.
 
@@ -171,19 +153,19 @@ def solve_period_recambering(flow: PeriodFlow, laws: SectionLaws, start: Array) 
 
     fixed_motion = _by_motion(fixed_flow, fixed_laws)
 
-    def at(delta: Array) -> _Trial:
+    def at(delta: Array) -> Trial:
         alpha, lift = fixed_flow.angle_and_lift(delta)
         # A section's lift depends on its own angle alone: one direction gives all slopes.
         (more, _), by_alpha = jax.jvp(
             lambda angle: _beyond_thin(fixed_laws, angle), (alpha,), (jnp.ones_like(alpha),)
         )
         held, _ = _held(fixed_flow, fixed_laws, alpha, more, fixed_motion)
-        return _Trial(delta, lift - held, *by_alpha)
+        return Trial(delta, lift - held, *by_alpha)
 
-    def slope_of(trial: _Trial) -> Array:
+    def slope_of(trial: Trial) -> Array:
         return _slope(fixed_flow, fixed_laws, trial.more_by_alpha)
 
-    def settled(trial: _Trial) -> Array:
+    def settled(trial: Trial) -> Array:
         return jnp.abs(weight * trial.missing).max() <= _TOLERANCE
 
     def unfinished(state: _Newton) -> Array:
@@ -192,7 +174,8 @@ def solve_period_recambering(flow: PeriodFlow, laws: SectionLaws, start: Array) 
     def step(state: _Newton) -> _Newton:
         last = state.trial
         inertia = 2.0 * jnp.pi / state.time * jnp.diag(fixed_flow.attached.ravel())
-        change = linear_algebra.solve(state.slope + inertia, last.missing.ravel()).reshape(shape)
+        slope = slope_of(last) + inertia
+        change = linear_algebra.solve(slope, last.missing.ravel()).reshape(shape)
         # Each strip by itself: one that has just stalled holds up no other.
         delta = last.recambering - jnp.clip(change, -longest, longest)
         following = state.n_trials + 1
@@ -202,22 +185,22 @@ def solve_period_recambering(flow: PeriodFlow, laws: SectionLaws, start: Array) 
         fall = norm(last.missing) / norm(trial.missing)
         time = state.time * jnp.where(fall > 1.0, fall, jnp.maximum(fall**_FALL, _LEAST_FALL))
         time = jnp.where(afresh, jnp.asarray(_FIRST_TIMES)[attempt], time)
-        return _Newton(following, trial, slope_of(trial), time)
+        return _Newton(following, trial, time)
 
     # Mapped, so that the polars are compiled once for both.
     both = jax.lax.map(at, jnp.stack([jnp.zeros(shape), jax.lax.stop_gradient(start)]))
     at_none, begin = (jax.tree.map(itemgetter(k), both) for k in range(2))
     # What is near the root already moves on as if it had begun at no recambering.
     time = _FIRST_TIMES[0] * norm(at_none.missing) / norm(begin.missing)
-    end = jax.lax.while_loop(unfinished, step, _Newton(0, begin, slope_of(begin), time))
-    last, slope = jax.lax.stop_gradient((end.trial, end.slope))
+    end = jax.lax.while_loop(unfinished, step, _Newton(0, begin, time))
+    last = jax.lax.stop_gradient(end.trial)
     # One more Newton step, in which alone the arguments count: its slope is that of the solution.
     # It is so short that the polars are straight along it.
     before, lift = flow.angle_and_lift(last.recambering)
     more, cd = _beyond_thin(laws, before)
     motion = _by_motion(flow, laws)
     missing = lift - _held(flow, laws, before, more, motion)[0]
-    newton = -linear_algebra.solve(slope, missing.ravel()).reshape(shape)
+    newton = -linear_algebra.solve(slope_of(last), missing.ravel()).reshape(shape)
     recambering = last.recambering + jnp.where(settled(last), newton, 0.0)
     alpha, lift = flow.angle_and_lift(recambering)
     more += last.more_by_alpha * (alpha - before)
@@ -230,21 +213,11 @@ def solve_period_recambering(flow: PeriodFlow, laws: SectionLaws, start: Array) 
     return HeldPeriod(recambering, states_of(alpha, cd), states_of(flow.motion_angle, motion.drag))
 
 
-class _Trial(NamedTuple):
-    """Recambering that is tried, the lift missing to the polars, and slopes of these."""
-
-    recambering: Array
-    missing: Array
-    more_by_alpha: Array
-    cd_by_alpha: Array
-
-
 class _Newton(NamedTuple):
     """State of Newton's method."""
 
     n_trials: Array | int
-    trial: _Trial
-    slope: Array
+    trial: Trial
     time: Array
 
 

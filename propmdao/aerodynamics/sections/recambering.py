@@ -17,7 +17,7 @@ What the polar takes off the lift of thin-airfoil theory enters as its mean over
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import NamedTuple, Protocol
 
 import jax
 import jax.numpy as jnp
@@ -93,13 +93,28 @@ class StripFlow:
         return alpha, 2.0 * circulation / speed_chord
 
 
-def unheld_states(flow: StripFlow) -> SectionStates:
+class SectionFlow(Protocol):
+    """Strips of a lattice, at an operating point or around a turn."""
+
+    @property
+    def relative_speed(self) -> Array:
+        """Speed of the air relative to the sections [m/s]."""
+
+    @property
+    def circulation(self) -> Array:
+        """Circulation of the strips without recambering [m^2/s]."""
+
+    def angle_and_lift(self, recambering: Array) -> tuple[Array, Array]:
+        """Angle of attack [rad] and lift coefficient of the lattice."""
+
+
+def unheld_states(flow: SectionFlow) -> SectionStates:
     """How the sections work without polars: with the lift of the lattice, and no drag.
 
     Parameters
     ----------
-    flow : StripFlow
-        Strips of the lattice at an operating point.
+    flow : SectionFlow
+        Strips of the lattice.
 
     Returns
     -------
@@ -136,18 +151,18 @@ def solve_recambering(flow: StripFlow, laws: SectionLaws) -> tuple[Array, Sectio
     ns = flow.circulation.size
     fractions = jnp.asarray(_FRACTIONS)[:, None]
 
-    def trial(delta: Array) -> _Trial:
+    def trial(delta: Array) -> Trial:
         alpha, lift = fixed_flow.angle_and_lift(delta)
         # A section's lift depends on its own angle alone: one direction gives all slopes.
         at, by_alpha = jax.jvp(fixed_laws.beyond_thin, (alpha,), (jnp.ones_like(alpha),))
-        return _Trial(delta, _missing(fixed_laws, alpha, lift, at[0]), *by_alpha)
+        return Trial(delta, _missing(fixed_laws, alpha, lift, at[0]), *by_alpha)
 
-    def unfinished(state: tuple[Array | int, _Trial]) -> Array:
+    def unfinished(state: tuple[Array | int, Trial]) -> Array:
         n_trials, best = state
         left = jnp.abs(best.missing).max() > _TOLERANCE
         return (n_trials == 0) | (n_trials < _MAX_STEPS) & left
 
-    def step(state: tuple[Array | int, _Trial]) -> tuple[Array | int, _Trial]:
+    def step(state: tuple[Array | int, Trial]) -> tuple[Array | int, Trial]:
         n_trials, best = state
         newton = -linear_algebra.solve(_slope(fixed_flow, fixed_laws, best), best.missing)
         newton = newton * jnp.minimum(1.0, _LONGEST_STEP / jnp.abs(newton).max())
@@ -157,7 +172,7 @@ def solve_recambering(flow: StripFlow, laws: SectionLaws) -> tuple[Array, Sectio
 
     # Nothing is missing yet: the first step goes nowhere, and looks at no recambering.
     none = jnp.zeros(ns)
-    start: tuple[Array | int, _Trial] = (0, _Trial(none, none, none, none))
+    start: tuple[Array | int, Trial] = (0, Trial(none, none, none, none))
     _, best = jax.lax.while_loop(unfinished, step, start)
     best = jax.lax.stop_gradient(best)
     # One more Newton step, in which alone the arguments count: its slope is that of the solution.
@@ -178,8 +193,18 @@ def solve_recambering(flow: StripFlow, laws: SectionLaws) -> tuple[Array, Sectio
     )
 
 
-class _Trial(NamedTuple):
-    """Recambering that is tried, the lift missing to the polars, and slopes of these."""
+class Trial(NamedTuple):
+    """Recambering that is tried, and what it leaves missing.
+
+    Attributes
+    ----------
+    recambering : array
+        Recambering of each strip [rad].
+    missing : array
+        Lift coefficient of the lattice less that of the polars.
+    more_by_alpha, cd_by_alpha : arrays
+        Slopes of what the polars add to the lift of thin-airfoil theory, and of drag [1/rad].
+    """
 
     recambering: Array
     missing: Array
@@ -192,7 +217,7 @@ def _missing(laws: SectionLaws, alpha: Array, lift: Array, more: Array) -> Array
     return lift - laws.thin(alpha) - laws.mean @ more
 
 
-def _slope(flow: StripFlow, laws: SectionLaws, trial: _Trial) -> Array:
+def _slope(flow: StripFlow, laws: SectionLaws, trial: Trial) -> Array:
     """Slope of the lift that is missing with the recambering: (ns, ns)."""
     identity = jnp.eye(trial.recambering.size)
     held_slope = 2.0 * jnp.pi * identity + laws.mean * trial.more_by_alpha

@@ -19,8 +19,8 @@ from jax import Array
 from propmdao.aerodynamics.lattice.rings import BOUND_CORE
 from propmdao.aerodynamics.lattice.steady_wake import steady_wake
 from propmdao.aerodynamics.lattice.strips import Strips
-from propmdao.aerodynamics.solutions import elements
 from propmdao.aerodynamics.solutions.case import RotorCase
+from propmdao.aerodynamics.solutions.elements import axial_rough as rough
 from propmdao.aerodynamics.solutions.elements import rough_thrust
 from propmdao.aerodynamics.solutions.lattice_loads import (
     BladeInfluence,
@@ -65,8 +65,6 @@ _TOLERANCE = 1.0e-12  # relative, in the induced velocity
 _ROUGH_TOLERANCE = 1.0e-3
 _GUESS = 0.05  # of the tip speed
 _STEEPEST, _FLATTEST = -5.0, -1.0  # slopes that a guess may have
-
-rough = partial(elements.rough, momentum=axial_induced_velocity)
 
 
 @record

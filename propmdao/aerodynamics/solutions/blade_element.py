@@ -22,8 +22,6 @@ Struct. Multidiscip. Optim. 63, 2021) times what it is singular with.
 
 from __future__ import annotations
 
-from functools import partial
-
 import jax
 import jax.numpy as jnp
 from jax import Array
@@ -32,7 +30,6 @@ from propmdao.aerodynamics.lattice.rings import vortex_rings
 from propmdao.aerodynamics.lattice.strips import Strips, blade_strips
 from propmdao.aerodynamics.sections.laws import SectionLaws, section_laws
 from propmdao.aerodynamics.sections.recambering import SectionStates
-from propmdao.aerodynamics.solutions import elements
 from propmdao.aerodynamics.solutions.case import RotorCase
 from propmdao.aerodynamics.solutions.elements import (
     LEAST_SINE,
@@ -41,6 +38,7 @@ from propmdao.aerodynamics.solutions.elements import (
     element_in,
     prandtl_loss,
 )
+from propmdao.aerodynamics.solutions.elements import axial_rough as rough
 from propmdao.aerodynamics.solutions.result import RotorLoads, sections_agree, unless_still
 from propmdao.aerodynamics.solutions.roots import Guess, decreasing_root
 from propmdao.aerodynamics.wakes.momentum import (
@@ -55,8 +53,6 @@ __all__ = ["evaluate", "flow_at", "rough", "solution", "solve"]
 
 # Relative, in the inflow angle, before the last step: derivatives are taken there.
 _TOLERANCE = 1.0e-10
-
-rough = partial(elements.rough, momentum=axial_induced_velocity)
 
 
 @record

@@ -6,6 +6,7 @@ An element is the section in the middle of a strip, with the polar of two-dimens
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
 from typing import NamedTuple, Protocol, Self
 
 import jax.numpy as jnp
@@ -14,7 +15,10 @@ from jax import Array
 from propmdao.aerodynamics.lattice.strips import Strips
 from propmdao.aerodynamics.sections.laws import SectionLaws, section_laws
 from propmdao.aerodynamics.solutions.case import RotorCase
-from propmdao.aerodynamics.wakes.momentum import momentum_induced_velocity
+from propmdao.aerodynamics.wakes.momentum import (
+    axial_induced_velocity,
+    momentum_induced_velocity,
+)
 from propmdao.records.pytrees import Scalar
 from propmdao.records.states import RotorState
 
@@ -179,7 +183,7 @@ def rough(
     rotation_speed : float
         Rotation speed of the trial [rad/s].
     momentum : callable
-        Momentum theory of the solver, `axial_induced_velocity` where there is no incidence.
+        Momentum theory of the solver.
 
     Returns
     -------
@@ -189,3 +193,7 @@ def rough(
     flow = flow.turning(rotation_speed)
     state, radius = flow.case.state, flow.case.rotor.radius
     return rough_thrust(flow.case, flow.strips, momentum(thrust_required, state, radius))
+
+
+#: `rough` of solvers without incidence, whose momentum theory is that of axial flight.
+axial_rough = partial(rough, momentum=axial_induced_velocity)

@@ -16,20 +16,23 @@ def _hermite_weights(nodes: jax.Array, x: jax.Array) -> jax.Array:
     there share it: the Catmull-Rom spline on uneven nodes.
     """
     h0, h, h2 = (nodes[:, k + 1] - nodes[:, k] for k in range(3))
-    t = (x - nodes[:, 1]) / h
-    value = (1.0 + 2.0 * t) * (1.0 - t) ** 2
-    left, right = t * (1.0 - t) ** 2 * h, t**2 * (t - 1.0) * h
+    value, left, right = _hermite_basis((x - nodes[:, 1]) / h, h)
     left_before, left_after = -h / (h0 * (h0 + h)), h0 / (h * (h0 + h))
     right_before, right_after = -h2 / (h * (h + h2)), h / (h2 * (h + h2))
     return jnp.stack(
         [
             left * left_before,
-            value - left * (left_before + left_after) + right * right_before,
-            1.0 - value + left * left_after - right * (right_before + right_after),
+            1.0 - value - left * (left_before + left_after) + right * right_before,
+            value + left * left_after - right * (right_before + right_after),
             right * right_after,
         ],
         axis=1,
     )
+
+
+def _hermite_basis(t: jax.Array, h: jax.Array) -> tuple[jax.Array, jax.Array, jax.Array]:
+    """Weights of the right value and of both slopes at t of a cell; the left value has the rest."""
+    return t * t * (3.0 - 2.0 * t), t * (1.0 - t) ** 2 * h, -t * t * (1.0 - t) * h
 
 
 def _cell(nodes: jax.Array, x: jax.Array) -> jax.Array:
@@ -138,11 +141,8 @@ def periodic_cubic(
     index = _cell(nodes, x)[:, None] + jnp.arange(2)
     ends = nodes[index]
     h = ends[:, 1] - ends[:, 0]
-    t = (x - ends[:, 0]) / h
-    left = 1.0 - t
-    right = t * t * (3.0 - 2.0 * t)
-    by_value = jnp.stack([1.0 - right, right], axis=1)
-    return index, (by_value, jnp.stack([t * left * left * h, -t * t * left * h], axis=1))
+    value, left, right = _hermite_basis((x - ends[:, 0]) / h, h)
+    return index, (jnp.stack([1.0 - value, value], axis=1), jnp.stack([left, right], axis=1))
 
 
 def dense(index: jax.Array, weight: jax.Array, n_nodes: int) -> jax.Array:

@@ -133,20 +133,21 @@ def section_curves(
     """
     index, weight = clamped_stencil(table.log_re, jnp.log(re))
     row = jnp.arange(table.values.shape[0])[:, None]
-
-    def through(curves: jax.Array, thickness: jax.Array | None = None) -> SectionCurves:
-        beyond = None if thickness is None else beyond_critical(mach, thickness)
-        slopes = periodic_slopes(table.alpha, curves)
-        return SectionCurves(table.alpha, curves, slopes, attached_gain(mach), beyond)
-
     if table.mach is None:
-        near = table.values[row, :, index]
-        return through(jnp.einsum("nrca,nr->nca", near, weight), table.thickness)
-    values = jnp.einsum("nrcma,nr->ncma", table.values[row, :, :, index], weight)
-    machs = jnp.broadcast_to(jnp.asarray(mach, float), re.shape)
-    index, weight = clamped_stencil(table.mach, machs)
-    near = values[row, :, index]
-    return through(jnp.einsum("nmca,nm->nca", near, weight))
+        near, thickness = table.values[row, :, index], table.thickness
+        curves = jnp.einsum("nrca,nr->nca", near, weight)
+    else:
+        values = jnp.einsum("nrcma,nr->ncma", table.values[row, :, :, index], weight)
+        machs = jnp.broadcast_to(jnp.asarray(mach, float), re.shape)
+        index, weight = clamped_stencil(table.mach, machs)
+        curves, thickness = jnp.einsum("nmca,nm->nca", values[row, :, index], weight), None
+    return SectionCurves(
+        table.alpha,
+        curves,
+        periodic_slopes(table.alpha, curves),
+        attached_gain(mach),
+        None if thickness is None else beyond_critical(mach, thickness),
+    )
 
 
 @compiled

@@ -16,9 +16,8 @@ from propmdao.aerodynamics.sections.period_recambering import (
     HeldPeriod,
     PeriodFlow,
     solve_period_recambering,
-    unheld_period_states,
 )
-from propmdao.aerodynamics.sections.recambering import SectionStates
+from propmdao.aerodynamics.sections.recambering import SectionStates, unheld_states
 from propmdao.aerodynamics.solutions.lattice_loads import LatticeGeometry, profile_drag
 from propmdao.aerodynamics.solutions.period.lattice import PeriodLattice, at_the_blades
 from propmdao.aerodynamics.solutions.period.onset import PeriodOnset
@@ -124,7 +123,7 @@ def held_lattice(
     )
     none = jnp.zeros((n, ns))
     if laws is None:
-        states = unheld_period_states(flow)
+        states = unheld_states(flow)
         held = HeldPeriod(none, states, states)
     else:
         held = solve_period_recambering(flow, laws, none if start is None else start)
