@@ -98,7 +98,7 @@ class JaxComponent(FunctionAtPoints):
         with self._relevance.all_seeds_active():
             asked = [c for c in of_model if self._relevance.is_relevant_system(c.pathname)]
         for component in asked:
-            if not component._has_begun and hasattr(component, "function"):  # a march has none
+            if not component._has_begun:
                 component._has_begun = True
                 component.compile_derivatives(component.first_point())
 

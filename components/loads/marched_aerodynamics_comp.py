@@ -149,6 +149,9 @@ class MarchedAerodynamicsComp(NodesComp):
         state, radius = self._case(inputs).state, 0.5 * inputs["diameter"].item()
         warn_if_fast(edgewise_advance_ratio(state, radius), stacklevel=2)
 
+    def compile_derivatives(self, inputs: Arrays) -> None:
+        """Begin nothing: derivatives are differences of marches."""
+
     def derivatives_at(self, inputs: Arrays) -> Derivatives:
         return _Differences(self, inputs)
 
