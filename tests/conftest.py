@@ -114,7 +114,11 @@ def on_devices() -> Callable[[int, str, str], Any]:
         run = subprocess.run(
             [sys.executable, "-W", "ignore", "-c", code],
             cwd=place.parent,
-            env=os.environ | {"XLA_FLAGS": f"--xla_force_host_platform_device_count={n_devices}"},
+            env=os.environ
+            | {
+                "XLA_FLAGS": f"--xla_force_host_platform_device_count={n_devices}",
+                "PYTHONPATH": os.pathsep.join(sys.path),  # with what pytest has put there
+            },
             capture_output=True,
             text=True,
         )

@@ -5,6 +5,7 @@ import json
 import jax
 import numpy as np
 import pytest
+from shared_mesh import COARSE
 
 from propmdao.acoustics.kinematics.observers import arc, point, sphere
 from propmdao.acoustics.sources.formulation1a import tones
@@ -12,13 +13,10 @@ from propmdao.analysis.single_point import analyze
 from propmdao.formats.propellers import load_propeller
 from propmdao.geometry.meshes import propeller_surface
 from propmdao.geometry.surface import surface_panels
-from propmdao.records.fidelity import Fidelity
 from propmdao.records.listening import Surroundings
 from propmdao.records.quantities import LEVELS
 
 SLOW_FLYER = load_propeller("apcsf_11x4.7_uiuc")
-# The mesh of tests/regression, whose compiled programs all of these tests share.
-COARSE = Fidelity(n_chordwise=4, n_spanwise=8, n_contour=21, n_surface_span=16, n_harmonics=5)
 
 
 def run(**asked):

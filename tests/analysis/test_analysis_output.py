@@ -5,17 +5,15 @@ from __future__ import annotations
 import numpy as np
 import pytest
 import soundfile
+from shared_mesh import COARSE
 
 from propmdao.acoustics.kinematics.observers import arc, sphere
 from propmdao.acoustics.sounds.recordings import SAMPLE_RATE
 from propmdao.analysis.single_point import analyze
 from propmdao.analysis.sounds import pressure_record, write_sound
 from propmdao.formats.propellers import load_propeller
-from propmdao.records.fidelity import Fidelity
 
 PROPELLER = load_propeller("apcsf_11x4.7_uiuc")
-# The mesh of tests/regression, whose compiled programs all of these tests share.
-COARSE = Fidelity(n_chordwise=4, n_spanwise=8, n_contour=21, n_surface_span=16, n_harmonics=5)
 ARC = arc(1.905, [-45.0, 0.0, 45.0])
 
 

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from shared_mesh import COARSE
 
 import propmdao as pm
 from propmdao.analysis.request import Request
@@ -10,8 +11,6 @@ from propmdao.propeller.catalog import catalog_names
 
 PROPELLER = pm.load_propeller("apcsf_11x4.7")
 TILTED = pm.Fidelity(n_chordwise=2, n_spanwise=6, n_azimuths=12)
-# The mesh of tests/regression, whose compiled programs all of these tests share.
-COARSE = pm.Fidelity(n_chordwise=4, n_spanwise=8, n_contour=21, n_surface_span=16, n_harmonics=5)
 POINT = {"rpm": 4200.0, "speed": 4.0, "fidelity": COARSE}
 
 

@@ -5,6 +5,7 @@ import json
 
 import numpy as np
 import pytest
+from shared_mesh import COARSE
 
 from propmdao.analysis.elastic.materials import ElasticError, material_of
 from propmdao.analysis.elastic.modelled_blade import ModelledBlade
@@ -15,11 +16,8 @@ from propmdao.formats.propellers import load_propeller
 from propmdao.formats.toml_files import read_toml, write_toml
 from propmdao.propeller.changes import Change
 from propmdao.propeller.checks import PropellerError
-from propmdao.records.fidelity import Fidelity
 from propmdao.records.models import ElasticModel, LoadModel
 
-# The mesh of tests/regression, whose compiled programs all of these tests share.
-COARSE = Fidelity(n_chordwise=4, n_spanwise=8, n_contour=21, n_surface_span=16, n_harmonics=5)
 MADE = load_propeller("apcsf_11x4.7")
 NOTHING = {"youngs_modulus": None, "material_density": None}  # of a material
 # Of the maker's material (1.6 million psi, specific gravity 1.7), its root as thin as the airfoil.

@@ -11,6 +11,7 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 import pytest
+from shared_mesh import COARSE
 
 from propmdao.acoustics.kinematics.observers import arc
 from propmdao.analysis import single_point
@@ -21,12 +22,9 @@ from propmdao.analysis.sweeping.sweeps import sweep
 from propmdao.analysis.wopwop import foreign_case
 from propmdao.commands.output.json_output import print_json
 from propmdao.formats.propellers import load_propeller
-from propmdao.records.fidelity import Fidelity
 from propmdao.runtime.finite import NotFiniteError
 
 PROPELLER = load_propeller("apcsf_11x4.7_uiuc")
-# The mesh of tests/regression, whose compiled programs all of these tests share.
-COARSE = Fidelity(n_chordwise=4, n_spanwise=8, n_contour=21, n_surface_span=16, n_harmonics=5)
 ASKED: dict[str, Any] = {
     "rpm": 4200.0,
     "speed": 8.0,

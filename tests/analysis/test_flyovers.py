@@ -6,6 +6,7 @@ import dataclasses
 
 import numpy as np
 import pytest
+from shared_mesh import COARSE
 
 from propmdao.acoustics.kinematics.observers import arc, point
 from propmdao.acoustics.levels.decibels import oaspl_db
@@ -16,13 +17,10 @@ from propmdao.analysis.flights.flyovers import fly_over
 from propmdao.analysis.single_point import analyze
 from propmdao.formats.propellers import load_propeller
 from propmdao.propeller.changes import Change
-from propmdao.records.fidelity import Fidelity
 from propmdao.records.models import NoiseModel, SelfNoiseModel
 from propmdao.records.states import OperatingPoint
 
 PROPELLER = load_propeller("apcsf_11x4.7_uiuc")
-# The mesh of tests/regression, whose compiled programs all of these tests share.
-COARSE = Fidelity(n_chordwise=4, n_spanwise=8, n_contour=21, n_surface_span=16, n_harmonics=5)
 HEIGHT = 20.0
 
 

@@ -7,6 +7,7 @@ import json
 
 import numpy as np
 import pytest
+from shared_mesh import COARSE
 
 from propmdao.acoustics.kinematics.observers import arc, point
 from propmdao.analysis.request import Asked, Request
@@ -15,7 +16,7 @@ from propmdao.formats.propellers import load_propeller
 from propmdao.propeller.changes import Change
 from propmdao.propeller.identity import checksum
 from propmdao.records.air import Air, Turbulence
-from propmdao.records.fidelity import Fidelity, Marching
+from propmdao.records.fidelity import Marching
 from propmdao.records.listening import Listening, ObserverGroup, Surroundings
 from propmdao.records.models import LoadModel, Model, NoiseModel, SelfNoiseModel, Transition
 from propmdao.records.quantities import ASKED, LEVELS
@@ -23,8 +24,6 @@ from propmdao.records.states import OperatingPoint
 from propmdao.records.wake_law import WakeGrid, WakeLaw
 
 PROPELLER = load_propeller("apcsf_11x4.7_uiuc")
-# The mesh of tests/regression, whose compiled programs all of these tests share.
-COARSE = Fidelity(n_chordwise=4, n_spanwise=8, n_contour=21, n_surface_span=16, n_harmonics=5)
 
 
 def test_single_values_go_into_the_records_that_hold_them():

@@ -7,6 +7,7 @@ import dataclasses
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
+from shared_mesh import COARSE
 
 from propmdao.acoustics.broadband.self_noise import SelfNoise
 from propmdao.acoustics.kinematics.observers import arc
@@ -18,12 +19,9 @@ from propmdao.geometry.blade import Blade
 from propmdao.geometry.lattice import strip_interpolation
 from propmdao.geometry.trailing_edge import trailing_edge
 from propmdao.propeller.description import Propeller
-from propmdao.records.fidelity import Fidelity
 from propmdao.records.quantities import BROADBAND_LEVELS, LEVELS
 
 PROPELLER = load_propeller("apcsf_11x4.7_uiuc")
-# The mesh of tests/regression, whose compiled programs all of these tests share.
-COARSE = Fidelity(n_chordwise=4, n_spanwise=8, n_contour=21, n_surface_span=16, n_harmonics=5)
 OBSERVERS = arc([1.905, 3.81], -45.0)
 RADII = strip_interpolation(PROPELLER.r_over_R, COARSE.n_spanwise)
 MECHANISMS = [field.name for field in dataclasses.fields(SelfNoise)]

@@ -8,6 +8,7 @@ import jax
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
+from shared_mesh import COARSE
 
 from propmdao.acoustics.kinematics.observers import arc
 from propmdao.analysis.self_noise import flow_of, section_layers, self_noise
@@ -15,12 +16,9 @@ from propmdao.analysis.single_point import analyze
 from propmdao.formats.propellers import load_propeller
 from propmdao.geometry.blade import Blade
 from propmdao.geometry.lattice import strip_interpolation
-from propmdao.records.fidelity import Fidelity
 from propmdao.records.models import LoadModel, Model, NoiseModel, SelfNoiseModel
 
 PROPELLER = load_propeller("apcsf_11x4.7_uiuc")
-# The mesh of tests/regression, whose compiled programs all of these tests share.
-COARSE = Fidelity(n_chordwise=4, n_spanwise=8, n_contour=21, n_surface_span=16, n_harmonics=5)
 OBSERVERS = arc(1.905, [-45.0])
 RADII = strip_interpolation(PROPELLER.r_over_R, COARSE.n_spanwise)
 BLADE = Blade.from_propeller(PROPELLER)

@@ -12,6 +12,7 @@ import jax
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
+from shared_mesh import COARSE
 
 from propmdao.acoustics.kinematics.observers import arc
 from propmdao.aerodynamics.sections.polars.family import with_drag
@@ -22,11 +23,8 @@ from propmdao.analysis.results import Analysis
 from propmdao.analysis.single_point import analyze
 from propmdao.analysis.uncertainty import Band, Uncertainties, band
 from propmdao.formats.propellers import load_propeller
-from propmdao.records.fidelity import Fidelity
 
 PROPELLER = load_propeller("apcsf_11x4.7")
-# The mesh of tests/regression, whose compiled programs all of these tests share.
-COARSE = Fidelity(n_chordwise=4, n_spanwise=8, n_contour=21, n_surface_span=16, n_harmonics=5)
 NONE = Uncertainties(twist_deg=0.0, chord=0.0, n_crit=(5.0, 5.0), drag=0.0)
 
 

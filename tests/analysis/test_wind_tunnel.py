@@ -8,6 +8,7 @@ import tomllib
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
+from shared_mesh import COARSE
 
 from propmdao.analysis.single_point import analyze
 from propmdao.analysis.sweeping.batches import analyze_each
@@ -24,7 +25,6 @@ from propmdao.analysis.wind_tunnel import (
     zero_thrust_twist_deg,
 )
 from propmdao.formats.propellers import load_propeller
-from propmdao.records.fidelity import Fidelity
 
 FILE = """
 source = "made up"
@@ -44,8 +44,6 @@ J = [0.6]
 CT = [0.01]
 CP = [0.02]
 """
-# The mesh of tests/regression, whose compiled programs all of these tests share.
-COARSE = Fidelity(n_chordwise=4, n_spanwise=8, n_contour=21, n_surface_span=16, n_harmonics=5)
 
 
 def points(rpm, j, ct, cp) -> Points:

@@ -9,14 +9,12 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
+from shared_mesh import COARSE
 
 from propmdao.analysis import single_point
 from propmdao.commands.program import main
-from propmdao.records.fidelity import Fidelity
 
 PROPELLER = "apcsf_11x4.7"
-# The mesh of tests/regression, whose compiled programs all of these tests share.
-COARSE = Fidelity(n_chordwise=4, n_spanwise=8, n_contour=21, n_surface_span=16, n_harmonics=5)
 FLIGHT = "--rpm 4200 --speed 8 --height 20 --duration 20 --trip heavy --json".split()
 
 

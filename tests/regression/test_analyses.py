@@ -14,6 +14,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from shared_mesh import COARSE
 
 from propmdao.acoustics.kinematics.observers import point
 from propmdao.analysis.results import Analysis
@@ -24,7 +25,6 @@ from propmdao.records.listening import Surroundings
 from propmdao.records.quantities import BROADBAND_LEVELS, LEVELS
 
 FILE = Path(__file__).with_name("analyses.json")
-COARSE = Fidelity(n_chordwise=4, n_spanwise=8, n_contour=21, n_surface_span=16, n_harmonics=5)
 KEPT = json.loads(FILE.read_text(encoding="utf-8"))
 # Relative to the largest number of the array. Roots are found to 1e-9 of the induced velocity, and
 # XLA adds in another order where code moves; the first is what is left of both in tones.

@@ -7,6 +7,7 @@ from typing import Any
 import jax
 import numpy as np
 import pytest
+from shared_mesh import COARSE
 
 import propmdao as pm
 from propmdao.aerodynamics import calls
@@ -17,8 +18,6 @@ from propmdao.analysis.sweeping import batches
 from propmdao.analysis.sweeping.batches import analyze_each
 
 PROPELLER = pm.load_propeller("apcsf_11x4.7_uiuc")
-# The mesh of tests/regression, whose compiled programs all of these tests share.
-COARSE = pm.Fidelity(n_chordwise=4, n_spanwise=8, n_contour=21, n_surface_span=16, n_harmonics=5)
 SMALL: dict[str, Any] = {"fidelity": COARSE}
 ELEMENTS: dict[str, Any] = {"blade_element": True, **SMALL}
 

@@ -8,6 +8,7 @@ from pathlib import Path
 import jax
 import numpy as np
 import pytest
+from shared_mesh import COARSE as AXIAL
 
 from propmdao.acoustics.kinematics.observers import arc
 from propmdao.acoustics.levels.decibels import oaspl_db, spl_db
@@ -39,8 +40,6 @@ COARSE = Fidelity(
     n_azimuths=8,
     period_wake=WakeGrid(2.0, 2.0, 1.5, 40.0),
 )
-# The mesh of tests/regression, whose compiled programs all of these tests share.
-AXIAL = Fidelity(n_chordwise=4, n_spanwise=8, n_contour=21, n_surface_span=16, n_harmonics=5)
 PROPELLER = load_propeller("apcsf_11x4.7_uiuc")
 
 

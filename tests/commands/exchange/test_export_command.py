@@ -10,13 +10,13 @@ from typing import Any
 
 import numpy as np
 import pytest
+from shared_mesh import COARSE
 
 from propmdao.analysis import single_point
 from propmdao.commands.program import main
 from propmdao.formats.propellers import load_propeller
 from propmdao.formats.wopwop.cases import read_cases
 from propmdao.propeller.airfoils.coordinate_files import read_coordinates
-from propmdao.records.fidelity import Fidelity
 
 PROPELLER = "apcsf_11x4.7"
 
@@ -120,11 +120,10 @@ def test_loads_that_did_not_converge_say_so(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """As analyze does: the case is written, exit status 0, and its reader is warned."""
-    coarse = Fidelity(4, 8, 21, 16, 5)  # the mesh of tests/regression, whose programs are shared
     analyze = single_point.analyze
 
     def unconverged(*values: Any, **asked: Any) -> Any:
-        analysis = analyze(*values, **asked, fidelity=coarse)
+        analysis = analyze(*values, **asked, fidelity=COARSE)
         loads = dataclasses.replace(analysis.loads, converged=np.asarray(False))
         return dataclasses.replace(analysis, loads=loads)
 
@@ -133,6 +132,6 @@ def test_loads_that_did_not_converge_say_so(
     assert export(tmp_path / "case", *arguments) == 0
     out = " ".join(capsys.readouterr().out.split())
     assert "NOT CONVERGED at 4200.0 rpm, do not use these numbers: thrust" in out
-    monkeypatch.setattr(single_point, "analyze", lambda *a, **k: analyze(*a, **k, fidelity=coarse))
+    monkeypatch.setattr(single_point, "analyze", lambda *a, **k: analyze(*a, **k, fidelity=COARSE))
     assert export(tmp_path / "case", *arguments) == 0
     assert "CONVERGED" not in capsys.readouterr().out

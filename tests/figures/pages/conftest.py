@@ -5,13 +5,12 @@ from __future__ import annotations
 import dataclasses
 
 import pytest
+from shared_mesh import COARSE
 
 import propmdao as pm
 
 HOSTILE = "</script><script>window.hit=1</script><img src=x onerror='window.hit=1'> & {{ 7*7 }} $x$"
 SECONDS = 0.5
-# The mesh of tests/regression, whose compiled programs all of these tests share.
-COARSE = pm.Fidelity(n_chordwise=4, n_spanwise=8, n_contour=21, n_surface_span=16, n_harmonics=5)
 
 
 @pytest.fixture(scope="session")

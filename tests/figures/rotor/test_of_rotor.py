@@ -8,18 +8,17 @@ from numpy.testing import assert_allclose
 
 pytest.importorskip("matplotlib")
 
+from shared_mesh import COARSE
+
 import propmdao as pm
 from propmdao.aerodynamics.sections.polars.propeller_polars import polars_for
 from propmdao.figures.rotor.of_rotor import rotor_figures
-
-# The mesh of tests/regression, whose compiled programs all of these tests share.
-SMALL = pm.Fidelity(n_chordwise=4, n_spanwise=8, n_contour=21, n_surface_span=16, n_harmonics=5)
 
 
 @pytest.fixture(scope="module")
 def found():
     propeller = pm.load_propeller("apcsf_11x4.7_uiuc")
-    return pm.analyze(propeller, rpm=4200.0, speed=4.0, fidelity=SMALL)
+    return pm.analyze(propeller, rpm=4200.0, speed=4.0, fidelity=COARSE)
 
 
 @pytest.fixture(scope="module")
@@ -57,7 +56,7 @@ def test_sections_work_on_their_polars(drawn):
 
 def test_a_rotor_at_rest_and_inviscid_flow_have_what_they_have(found):
     assert set(rotor_figures(found)) == {"blade", "span_loads"}
-    still = pm.analyze(found.propeller, rpm=0.0, fidelity=SMALL)
+    still = pm.analyze(found.propeller, rpm=0.0, fidelity=COARSE)
     assert set(rotor_figures(still)) == {"blade"}
 
 

@@ -7,14 +7,13 @@ from typing import Any
 
 import numpy as np
 import pytest
+from shared_mesh import COARSE
 
 import propmdao as pm
 from propmdao.analysis.request import Request
 from propmdao.commands.designs.bench.workbench import Workbench
 
 AT = (1.905, -45.0)
-# The mesh of tests/regression, whose compiled programs all of these tests share.
-COARSE = pm.Fidelity(n_chordwise=4, n_spanwise=8, n_contour=21, n_surface_span=16, n_harmonics=5)
 
 
 @pytest.fixture(scope="session")
