@@ -84,7 +84,7 @@ def mission() -> om.Problem:
         control="values",
     )
     prob.model.add_subsystem("propeller", group, promotes=["*"])
-    energy = om.ExecComp("energy = sum(shaft_power)", shape=(NODES,), energy={"shape": (1,)})
+    energy = om.ExecComp("energy = sum(shaft_power)", shaft_power={"shape": (NODES,)})
     prob.model.add_subsystem("energy", energy, promotes=["*"])
     prob.setup(mode="rev")
     prob.set_val("speed", np.linspace(0.0, 10.0, NODES))

@@ -176,8 +176,10 @@ class SegmentKernels(NamedTuple):
         (3, n_points) array
             Velocity [m/s].
         """
-        moments = jnp.einsum("bcs,bsp->cp", circulation * self.moments, self.kernel)
-        return _velocity(self.points, moments)
+        # One row of segments of all chains: a sum over two axes, as einsum has it, is transposed
+        # into a copy of the kernel.
+        moments = jnp.moveaxis(circulation * self.moments, 1, 0).reshape(6, -1)
+        return _velocity(self.points, moments @ self.kernel.reshape(moments.shape[1], -1))
 
     def without_own(self) -> SegmentKernels:
         """The same where each point lies on the segment of its number in the first chain.
@@ -236,8 +238,8 @@ def filament_velocities(points: Array, start: Array, end: Array, core_radius: Ar
     p = points.T
 
     # One filament at a time: the block of segments x points stays in cache, and the sum over
-    # segments is a matrix product. The checkpoint keeps reverse mode from storing every block.
-    @jax.checkpoint
+    # segments is a matrix product. Reverse mode keeps five numbers of each pair: computing them
+    # anew for each product takes 2 to 3.5 times as long, all the more where there are several.
     def filament(ends: tuple[Array, Array]) -> Array:
         a, b = (x.T for x in ends)
         return _moments(a, b) @ _kernel(p, a, b, _core4(a, b, core_radius))
