@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Hashable, Mapping
+from collections.abc import Callable, Collection, Hashable, Mapping
 from functools import partial
 from typing import Any, Protocol
 
@@ -32,11 +32,14 @@ def evaluate_all(function: Function, static: Hashable, constants: Any, inputs: A
 class Derivatives(Protocol):
     """Derivatives at one point, as products by seeds that are dictionaries of all variables."""
 
-    def forward(self, seeds: Arrays) -> Mapping[str, Any]:
-        """Return derivatives of the outputs along the direction `seeds`, one for each input."""
+    def forward(self, seeds: Arrays, outputs: Collection[str]) -> Mapping[str, Any]:
+        """Return derivatives of `outputs`, at least, along the direction `seeds` of all inputs."""
 
     def reverse(self, seeds: Arrays) -> Mapping[str, Any]:
         """Return derivatives by every input of the sum of the outputs weighted with `seeds`."""
+
+    def release(self) -> None:
+        """Let go what takes much memory; a further product makes it again."""
 
 
 class FunctionDerivatives:
@@ -61,8 +64,8 @@ class FunctionDerivatives:
         self._linearisation = function, static, outputs, constants, inputs
         self._pull: Any = None
 
-    def forward(self, seeds: Arrays) -> Mapping[str, Any]:
-        """Return derivatives of the outputs along the direction `seeds`, one for each input."""
+    def forward(self, seeds: Arrays, outputs: Collection[str]) -> Mapping[str, Any]:
+        """Return derivatives of all outputs along the direction `seeds`, one for each input."""
         products: Arrays = _push(*self._linearisation, seeds)
         return products
 
@@ -71,6 +74,10 @@ class FunctionDerivatives:
         if self._pull is None:
             self._pull = _linearise(*self._linearisation)
         return _pull_back(self._pull, seeds)
+
+    def release(self) -> None:
+        """Let the linearisation go."""
+        self._pull = None
 
 
 def compile_derivatives(

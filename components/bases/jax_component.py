@@ -68,7 +68,7 @@ class JaxComponent(FunctionAtPoints):
         if mode == "fwd":
             shapes: Shapes = {name: value.shape for name, value in point.items()}
             seeds = complete_seeds(d_inputs, shapes)
-            products, sums = derivatives.forward(seeds), d_outputs
+            products, sums = derivatives.forward(seeds, tuple(d_outputs)), d_outputs
         else:
             seeds = complete_seeds(d_outputs, self.output_shapes())
             products, sums = derivatives.reverse(seeds), d_inputs

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import contextlib
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from itertools import chain
 from typing import Any
 
@@ -50,8 +50,8 @@ class NodesComp(JaxComponent):
     evaluation, and a point that no seed touches is not differentiated. `points_in_a_call` may put
     several into a call instead, and an accelerator has all of them in one. A point that is
     differentiated keeps its linearisation until its inputs change; where all its outputs are
-    scalars and vectors in space, their gradients alone: missions ask for many products at the same
-    points.
+    scalars and vectors in space, the gradients of those that have been asked for, for missions ask
+    for many products at the same points.
 
     Options
     -------
@@ -205,6 +205,7 @@ class NodesComp(JaxComponent):
             self.begin_reverse()
         start, end = (d_inputs, d_outputs) if mode == "fwd" else (d_outputs, d_inputs)
         all_seeds = copied(start)
+        outputs = [name for name in d_outputs if self._is_asked_for(name)]
         touched: list[tuple[int, Arrays, Arrays]] = []
         for node, point in self._points(inputs):
             node_seeds = {name: self._view(node, name, all_seeds) for name in all_seeds}
@@ -217,7 +218,9 @@ class NodesComp(JaxComponent):
         def products_at(node_and_seeds: tuple[int, Arrays, Arrays]) -> Mapping[str, Any]:
             node, point, seeds = node_and_seeds
             derivatives = self._linearised(point)
-            products = (derivatives.forward if mode == "fwd" else derivatives.reverse)(seeds)
+            products = (
+                derivatives.forward(seeds, outputs) if mode == "fwd" else derivatives.reverse(seeds)
+            )
             with self._naming(node):
                 require_finite_products(products, seeds)
             return products
@@ -226,6 +229,11 @@ class NodesComp(JaxComponent):
             for name in end:
                 if name in products:  # outputs that never change have none
                     self._view(node, name, end)[:] += products[name]
+
+    def _is_asked_for(self, output: str) -> bool:
+        """Whether derivatives of an output of points count for those of the model."""
+        name = f"{self.pathname}.{output}" if self.pathname else output
+        return output in self._output_shapes and bool(self._relevance.is_relevant(name))
 
     def first_point(self) -> Arrays:
         return next(point for _, point in self._points(self._inputs))
@@ -254,7 +262,7 @@ class NodesComp(JaxComponent):
     def _derivatives_to_keep(self, inputs: Arrays) -> Derivatives:
         derivatives = super()._derivatives_to_keep(inputs)
         if all(shape in ((1,), (3,)) for shape in self._output_shapes.values()):
-            return _Gradients(derivatives, self._output_shapes)
+            return _Gradients(derivatives, self._output_shapes, self.n_points() == 1)
         return derivatives
 
     def _points(self, inputs: Any) -> Iterator[tuple[int, Arrays]]:
@@ -275,34 +283,50 @@ class NodesComp(JaxComponent):
 
 
 class _Gradients:
-    """Derivatives of few numbers as gradients, one product back for each."""
+    """Derivatives of few numbers as gradients, each taken when it is first asked for.
 
-    def __init__(self, derivatives: Derivatives, shapes: Shapes) -> None:
-        zero = {name: np.zeros(shape) for name, shape in shapes.items()}
-        rows = [
-            derivatives.reverse({**zero, name: unit})
-            for name, (size,) in shapes.items()
-            for unit in np.eye(size)
-        ]
-        self._names = tuple(shapes)
-        self._ends = np.cumsum([size for (size,) in shapes.values()])
-        self._gradients = {
-            name: np.stack([np.asarray(row[name]) for row in rows]) for name in rows[0]
-        }
+    One takes a product back for each of its numbers. Several points that all kept their
+    linearisations would take much memory: they make them again for what is asked for later.
+    """
 
-    def forward(self, seeds: Arrays) -> Mapping[str, Any]:
+    def __init__(self, derivatives: Derivatives, shapes: Shapes, alone: bool) -> None:
+        self._derivatives, self._shapes, self._alone = derivatives, shapes, alone
+        self._known: dict[str, Arrays] = {}
+
+    def forward(self, seeds: Arrays, outputs: Collection[str]) -> Mapping[str, Any]:
         # Most seeds are zero, and those of the blade, the large ones, where it is no variable.
-        products = sum(
-            np.tensordot(self._gradients[name], seed, axes=np.ndim(seed))
-            for name, seed in seeds.items()
-            if seed.any()
-        )
-        parts = np.split(np.atleast_1d(products), self._ends[:-1])
-        return dict(zip(self._names, parts, strict=True))
+        moved = {name: seed for name, seed in seeds.items() if seed.any()}
+        return {
+            output: sum(
+                (np.tensordot(gradient[name], seed, np.ndim(seed)) for name, seed in moved.items()),
+                start=np.zeros(self._shapes[output]),
+            )
+            for output, gradient in self._of(outputs).items()
+        }
 
     def reverse(self, seeds: Arrays) -> Mapping[str, Any]:
-        weights = np.concatenate([seeds[name] for name in self._names])
+        gradients = self._of([name for name, seed in seeds.items() if seed.any()])
+        weights = np.concatenate([seeds[name] for name in gradients])
+        together = zip(*(gradient.items() for gradient in gradients.values()), strict=True)
         return {
-            name: np.tensordot(weights, gradients, axes=1)
-            for name, gradients in self._gradients.items()
+            parts[0][0]: np.tensordot(weights, np.concatenate([part for _, part in parts]), 1)
+            for parts in together
         }
+
+    def release(self) -> None:
+        self._derivatives.release()
+        self._known.clear()
+
+    def _of(self, outputs: Collection[str]) -> dict[str, Arrays]:
+        """Gradients of outputs by every input, the numbers of an output leading."""
+        new = [name for name in outputs if name not in self._known]
+        zero = {name: np.zeros(shape) for name, shape in self._shapes.items()}
+        for name in new:
+            (size,) = self._shapes[name]
+            rows = [self._derivatives.reverse({**zero, name: unit}) for unit in np.eye(size)]
+            self._known[name] = {
+                by: np.stack([np.asarray(row[by]) for row in rows]) for by in rows[0]
+            }
+        if new and not self._alone:
+            self._derivatives.release()
+        return {name: self._known[name] for name in outputs}

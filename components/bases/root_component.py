@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from functools import cached_property
 from typing import Any, NamedTuple
 
@@ -123,11 +123,11 @@ class _RootDerivatives:
         self._function, self._shapes = function, shapes
         self._state, self._residual, self._state_outputs = state, residual, state_outputs
 
-    def forward(self, seeds: Arrays) -> Mapping[str, Any]:
+    def forward(self, seeds: Arrays, outputs: Collection[str]) -> Mapping[str, Any]:
         by_inputs, by_state = self._residual_gradient
         change = sum(np.vdot(by_inputs[name], np.asarray(seed)) for name, seed in seeds.items())
         direction = {**seeds, self._state: np.array([-change / by_state])}
-        return self._function.forward(direction)
+        return self._function.forward(direction, outputs)
 
     def reverse(self, seeds: Arrays) -> Mapping[str, Any]:
         residual = self._residual_gradient
@@ -138,6 +138,9 @@ class _RootDerivatives:
             by_root = sum(scale * seeds[n].item() for n, scale in self._state_outputs.items())
         factor = -by_root / residual.by_state
         return {name: value + factor * residual.by_inputs[name] for name, value in products.items()}
+
+    def release(self) -> None:
+        self._function.release()
 
     @cached_property
     def _residual_gradient(self) -> _Gradient:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import warnings
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from typing import Any
 
 import numpy as np
@@ -219,7 +219,7 @@ class _Differences:
     def __init__(self, component: MarchedAerodynamicsComp, inputs: Arrays) -> None:
         self._component, self._inputs = component, inputs
 
-    def forward(self, seeds: Arrays) -> Mapping[str, Any]:
+    def forward(self, seeds: Arrays, outputs: Collection[str]) -> Mapping[str, Any]:
         return self._component.products(self._inputs, seeds)
 
     def reverse(self, seeds: Arrays) -> Mapping[str, Any]:
@@ -227,3 +227,6 @@ class _Differences:
             "a march in time has derivatives forward alone, of two marches for each design"
             ' variable: set the problem up with setup(mode="fwd"), or leave out unsteady'
         )
+
+    def release(self) -> None:
+        """Nothing: no march is kept."""

@@ -6,7 +6,7 @@ import pytest
 from numpy.testing import assert_allclose
 from openmdao.utils.assert_utils import assert_check_partials
 
-from propmdao.components.bases import nodes_comp
+from propmdao.components.bases import array_function, nodes_comp
 from propmdao.components.bases.array_function import FunctionDerivatives
 from propmdao.components.bases.nodes_comp import STATIC, NodesComp
 
@@ -126,20 +126,54 @@ def test_a_failure_names_its_node():
         alone.run_model()
 
 
-def test_gradients_of_scalars_and_vectors_are_computed_once_at_a_point(monkeypatch):
-    prob = problem(3, "fwd", shares=False)
-    prob.set_val("speed", [8.0, 10.0, 12.0])
-    prob.run_model()
+@pytest.fixture
+def products_back(monkeypatch):
+    """Grows by one with each product back, by the number of its outputs that have a seed."""
     calls = []
     reverse = FunctionDerivatives.reverse
-    monkeypatch.setattr(
-        FunctionDerivatives, "reverse", lambda *args: (calls.append(1), reverse(*args))[1]
-    )
+
+    def counted(self, seeds):
+        calls.append(sum(seed.any() for seed in seeds.values()))
+        return reverse(self, seeds)
+
+    monkeypatch.setattr(FunctionDerivatives, "reverse", counted)
+    return calls
+
+
+@pytest.mark.parametrize("mode", ["fwd", "rev"])
+def test_gradients_of_scalars_and_vectors_are_taken_once_each_when_asked_for(mode, products_back):
+    prob = problem(3, mode, shares=False)
+    prob.set_val("speed", [8.0, 10.0, 12.0])
+    prob.run_model()
+    by_speed = 1.2 * 6.0 * np.array([8.0, 10.0, 12.0])
     for _ in range(2):
-        prob.compute_totals(of=["lift"], wrt=["speed", "density", "area"])
-        assert len(calls) == 12  # four numbers at each of three points
+        totals = prob.compute_totals(of=["lift"], wrt=["speed", "density", "area"])
+        assert len(products_back) == 3  # a number at each of three points
+        assert_allclose(totals["lift", "speed"], np.diag(by_speed))
+    for _ in range(2):
+        totals = prob.compute_totals(of=["lift", "force"], wrt=["speed"])
+        assert len(products_back) == 12  # and three numbers more
+        blocks = totals["force", "speed"].reshape(3, 3, 3)
+        assert_allclose(blocks[[0, 1, 2], :, [0, 1, 2]], np.outer(by_speed, [0.6, 0.0, -0.8]))
     prob.set_val("speed", [8.0, 11.0, 12.0])  # one of the points is another one
     prob.run_model()
     totals = prob.compute_totals(of=["lift"], wrt=["speed"])["lift", "speed"]
     assert_allclose(totals, np.diag(6.0 * 1.2 * np.array([8.0, 11.0, 12.0])))
-    assert len(calls) == 16
+    assert len(products_back) == 13
+    assert set(products_back) == {1}
+
+
+@pytest.mark.parametrize(("num_nodes", "kept"), [(None, True), (3, False)])
+def test_a_point_alone_keeps_its_linearisation(num_nodes, kept, monkeypatch):
+    """Many would take much memory."""
+    linearised = []
+    linearise = array_function._linearise
+    monkeypatch.setattr(
+        array_function, "_linearise", lambda *args: (linearised.append(1), linearise(*args))[1]
+    )
+    prob = problem(num_nodes, "rev", shares=False)
+    prob.set_val("speed", np.linspace(8.0, 12.0, num_nodes or 1))
+    prob.run_model()
+    for output in ("lift", "force", "lift"):
+        prob.compute_totals(of=[output], wrt=["speed"])
+    assert len(linearised) == (1 if kept else 2 * num_nodes)
