@@ -9,6 +9,7 @@ from typing import Any, Protocol
 import jax
 import numpy as np
 
+from propmdao.components.bases.packed_arrays import PackedArrays, packed
 from propmdao.runtime.compilation import compile_ahead, compiled
 from propmdao.runtime.side_by_side import at_all
 
@@ -62,7 +63,7 @@ class FunctionDerivatives:
         outputs: tuple[str, ...],
     ) -> None:
         self._linearisation = function, static, outputs, constants, inputs
-        self._pull: Any = None
+        self._pull: PackedArrays | None = None
 
     def forward(self, seeds: Arrays, outputs: Collection[str]) -> Mapping[str, Any]:
         """Return derivatives of all outputs along the direction `seeds`, one for each input."""
@@ -130,11 +131,11 @@ def _linearise(
     outputs: tuple[str, ...],
     constants: Any,
     inputs: Arrays,
-) -> Any:
-    return jax.vjp(_chosen(function, static, outputs, constants), inputs)[1]
+) -> PackedArrays:
+    return packed(jax.vjp(_chosen(function, static, outputs, constants), inputs)[1])
 
 
 @partial(compiled, optimisation=1)
-def _pull_back(pull: Any, seeds: Arrays) -> Arrays:
-    products: Arrays = pull(seeds)[0]
+def _pull_back(pull: PackedArrays, seeds: Arrays) -> Arrays:
+    products: Arrays = pull.unpacked()(seeds)[0]
     return products
