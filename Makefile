@@ -56,7 +56,7 @@ bench: $(VENV)/dev
 # Pages run the propmdao command and show figures as a notebook does, so not with the backend above.
 docs: $(VENV)/docs
 	env -u MPLBACKEND PATH="$(CURDIR)/$(BIN):$$PATH" \
-	  $(BIN)/python -m sphinx -W --keep-going -q -b html docs build/site
+	  $(BIN)/python -m sphinx -j auto -W --keep-going -q -b html docs build/site
 
 notebooks: $(VENV)/docs
 	mkdir -p build/notebooks

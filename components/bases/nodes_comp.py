@@ -325,7 +325,7 @@ class _Gradients:
             (size,) = self._shapes[name]
             rows = [self._derivatives.reverse({**zero, name: unit}) for unit in np.eye(size)]
             self._known[name] = {
-                by: np.stack([np.asarray(row[by]) for row in rows]) for by in rows[0]
+                name_in: np.stack([np.asarray(row[name_in]) for row in rows]) for name_in in rows[0]
             }
         if new and not self._alone:
             self._derivatives.release()
