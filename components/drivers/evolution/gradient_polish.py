@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
+from functools import cache
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -17,6 +18,12 @@ from propmdao.components.drivers.evaluation.design_problem import DesignProblem
 #: Change of the objective, and sum of the violations, that end it; both over the first slope.
 _TOLERANCE = 1e-10
 _ITERATIONS = 100
+#: How far within their bounds constraints are held, in driver scaling: SLSQP meets them to its
+#: tolerance, and a design that is beyond a bound by rounding alone is not the best.
+_WITHIN = 1e-9
+
+
+_Totals = dict[tuple[str, str], Array]  # of a response by a design variable
 
 
 class _Ended(Exception):
@@ -28,7 +35,7 @@ class _Point(NamedTuple):
 
     energy: Any  # a number, or its derivatives
     equal: Array  # zero where it holds
-    within: Array  # at least zero where it holds
+    within: Array  # at least zero where it holds, by a little
 
 
 def polish(
@@ -57,7 +64,7 @@ def polish(
     SLSQP, which knows no curvature yet, is then of the size of the bounds at most. Derivatives cost
     a run of the model in this process each. A design whose analysis fails ends it.
     """
-    slopes = _slopes(driver, problem)
+    slopes, linear = _slopes(driver, problem), cache(lambda: _linear_totals(driver))
     points: dict[bytes, _Point] = {}
     derivatives: dict[bytes, _Point] = {}
     span = problem.upper - problem.lower
@@ -82,7 +89,7 @@ def polish(
                 raise _Ended from None
             (energy,) = driver.get_objective_values().values()
             points.setdefault(key, _Point(float(energy.item()), *_residuals(driver)))
-            derivatives[key] = _derivatives(driver, slopes)
+            derivatives[key] = _derivatives(driver, slopes, linear())
         return derivatives[key]
 
     try:
@@ -141,31 +148,57 @@ def _sides(driver: Driver) -> list[_Side]:
 def _residuals(driver: Driver) -> tuple[Array, Array]:
     """Equalities and inequalities of the model as it is."""
     values = driver.get_constraint_values(driver_scaling=False)
-    return _by_kind(
+    equal, within = _by_kind(
         (side, np.ravel(side.factor * (values[side.name] - side.bound))) for side in _sides(driver)
     )
+    return equal, within - _WITHIN
 
 
-def _derivatives(driver: Driver, slopes: Array) -> _Point:
+def _derivatives(driver: Driver, slopes: Array, linear: _Totals) -> _Point:
     """Derivatives of objective, equalities and inequalities of the model as it is."""
     driver._total_jac = None
+    totals = linear | driver._compute_totals(return_format="flat_dict")
     (objective,) = driver._objs
-    totals: Any = driver._compute_totals(
-        of=[objective, *driver._cons], wrt=list(driver._designvars), return_format="flat_dict"
-    )
+    metas = driver._designvars
 
-    def rows(name: str) -> Array:
-        parts = [np.atleast_2d(totals[name, variable]) for variable in driver._designvars]
+    def rows(name: str, size: int) -> Array:
+        # A variable of linear constraints alone has no derivatives of the others.
+        none = {variable: np.zeros((size, meta["size"])) for variable, meta in metas.items()}
+        parts = [totals.get((name, variable), none[variable]) for variable in metas]
         joined: Array = np.concatenate(parts, axis=1) * slopes
         return joined
 
     def turned(side: _Side) -> Array:
-        scaler = driver._cons[side.name]["total_scaler"]
+        meta = driver._cons[side.name]
+        scaler = meta["total_scaler"]
         sign = np.sign(side.factor) * (1.0 if scaler is None else np.sign(scaler))
-        own = rows(side.name)
-        return np.broadcast_to(sign, len(own))[:, None] * own
+        return np.broadcast_to(sign, meta["size"])[:, None] * rows(side.name, meta["size"])
 
-    return _Point(rows(objective)[0], *_by_kind((side, turned(side)) for side in _sides(driver)))
+    return _Point(rows(objective, 1)[0], *_by_kind((side, turned(side)) for side in _sides(driver)))
+
+
+def _linear_totals(driver: Driver) -> _Totals:
+    """Derivatives of the linear constraints, which are the same everywhere, in driver scaling.
+
+    OpenMDAO leaves out the units of derivatives that are asked for by name, unless they are those
+    of all responses that are not linear; so here they are asked for without its scaling.
+    """
+    names = [name for name, meta in driver._cons.items() if meta["linear"]]
+    if not names:
+        return {}
+    variables = driver._designvars
+    totals = driver._problem().compute_totals(names, list(variables))
+    return {
+        (name, variable): _scale(driver._cons[name])[:, None] * block / _scale(variables[variable])
+        for (name, variable), block in totals.items()
+    }
+
+
+def _scale(meta: Mapping[str, Any]) -> Array:
+    """Change of a variable in driver scaling with that in its own units: (size,)."""
+    by_user, by_units = meta["total_scaler"], meta["unit_scaler"]
+    scale = (1.0 if by_user is None else by_user) * (1.0 if by_units is None else by_units)
+    return np.broadcast_to(scale, meta["size"])
 
 
 def _by_kind(rows: Iterable[tuple[_Side, Array]]) -> tuple[Array, Array]:

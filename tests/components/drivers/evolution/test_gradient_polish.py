@@ -111,6 +111,34 @@ def test_units_and_scaling_are_those_of_the_driver():
     assert polished.get_val("f")[0] < plain.get_val("f")[0]
 
 
+def test_linear_constraints_leave_units_and_scaling_alone():
+    """With elements of the variables alone, and a variable that the objective does not know."""
+    prob = om.Problem(reports=False)
+    prob.model.add_subsystem("comp", Scaled(), promotes=["*"])
+    units = {
+        "x": {"units": "rad", "val": [0.3, 0.3]},
+        "z": {"units": "m", "val": 0.4},
+        "h": {"units": "m"},
+    }
+    line = om.ExecComp("h = 2.0 * x[1] - z - 0.1", **units)
+    prob.model.add_subsystem("line", line, promotes=["*"])
+    prob.driver = DifferentialEvolutionDriver(
+        seed=3, max_gen=2, pop_size=8, disp=False, best_file=None, polish=True
+    )
+    prob.model.add_design_var("x", lower=-30.0, upper=30.0, ref=10.0, units="deg")
+    prob.model.add_design_var("z", lower=20.0, upper=40.0, ref0=-10.0, ref=7.0, units="cm")
+    prob.model.add_objective("f", ref=0.1, units="mm")
+    prob.model.add_constraint("h", upper=-20.0, ref=-40.0, units="cm", linear=True)
+    prob.set_solver_print(-1)
+    prob.setup()
+    prob.run_driver()
+    # By hand: x0 = -0.3, and 2 x1 = z - 0.1 with the largest z.
+    assert_allclose(prob.get_val("x"), [-0.3, 0.15], atol=1e-6)
+    assert_allclose(prob.get_val("z"), 0.4, atol=1e-6)
+    n_polished = int(prob.driver.message.split("polished by ")[1].split()[0])
+    assert n_polished < 20
+
+
 def test_a_polished_search_is_resumed_to_the_same_end(tmp_path):
     whole = scaled(polish=True, checkpoint=tmp_path / "whole")
     whole.run_driver()
