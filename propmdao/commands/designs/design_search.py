@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
 #: Violation of a constraint in driver scaling that counts as none.
 TOLERANCE = 1e-4
-#: Change of the scaled objective that ends a search by derivatives, 1e-6 dB of a level: with 1e-4 dB
+#: Change of the scaled objective that ends a search by derivatives, 1e-6 dB of a level: by 1e-4 dB
 #: it ends where it rests for some steps, 0.06 dB above the optimum.
 _SETTLED = 1e-7
 _CASES, _BEST, _CHECKPOINT = "cases.sql", "best_design.json", "evolution.checkpoint"
