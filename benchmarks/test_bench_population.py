@@ -26,6 +26,7 @@ def test_population(benchmark, models, at_once):
 
     benchmark.pedantic(population.run, setup=starts, rounds=2, warmup_rounds=1)
     benchmark.extra_info["device"] = jax.devices()[0].device_kind
-    benchmark.extra_info["blades_per_second"] = N_BLADES / benchmark.stats.stats.min
+    if benchmark.stats:  # none where it is run without being timed
+        benchmark.extra_info["blades_per_second"] = N_BLADES / benchmark.stats.stats.min
     if (size := population.bytes_per_blade) is not None:
         benchmark.extra_info["blade_bytes"] = size

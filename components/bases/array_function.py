@@ -72,9 +72,10 @@ class FunctionDerivatives:
 
     def reverse(self, seeds: Arrays) -> Mapping[str, Any]:
         """Return derivatives by every input of the sum of the outputs weighted with `seeds`."""
-        if self._pull is None:
-            self._pull = _linearise(*self._linearisation)
-        return _pull_back(self._pull, seeds)
+        pull = self._pull  # which another thread may let go
+        if pull is None:
+            pull = self._pull = _linearise(*self._linearisation)
+        return _pull_back(pull, seeds)
 
     def release(self) -> None:
         """Let the linearisation go."""

@@ -22,7 +22,6 @@ _ITERATIONS = 100
 #: tolerance, and a design that is beyond a bound by rounding alone is not the best.
 _WITHIN = 1e-9
 
-
 _Totals = dict[tuple[str, str], Array]  # of a response by a design variable
 
 
