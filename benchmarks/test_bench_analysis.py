@@ -117,15 +117,13 @@ def test_trim(benchmark, nodes, sections):
 def test_wake_kernel(benchmark):
     """Velocities of 2.25 million pairs of segments and points, as in one lattice solution.
 
-    The floor is 1.2 ns a pair, 2.7 ms: C on an idle two-core machine with AVX-512.
+    The reference kernel does as many in C, on one core.
     """
     rng, n_nodes = np.random.default_rng(0), wake_transport().ages.size
     points = jnp.asarray(rng.normal(size=(584, 3)))
     start = jnp.asarray(rng.normal(size=(25, 2 * (n_nodes - 1), 3)))
     core = jnp.full(start.shape[1], 1e-2)
     kernel = jax.jit(filament_velocities)
-    pairs = 584 * 25 * 2 * (n_nodes - 1)
-    benchmark.extra_info["floor_s"] = 1.2e-9 * pairs
     benchmark.pedantic(
         lambda: jax.block_until_ready(kernel(points, start, start + 0.1, core)),
         rounds=20,

@@ -1,6 +1,6 @@
 """Cost of exact derivatives: an adjoint gradient against the analysis it belongs to.
 
-The aim: objective and two constraints by 30 variables in no more than four analyses, in one run,
+The aim: objective and two constraints by 30 variables in no more than three analyses, in one run,
 with no more than 2 GiB of memory. The ratio is in the benchmark's ``extra_info``.
 """
 
@@ -73,6 +73,7 @@ def test_gradient_of_a_design(benchmark, problem):
         gradient.append(_seconds(differentiate))
     benchmark.extra_info["analyses"] = min(gradient) / min(analysis)
     benchmark.extra_info["analysis_s"] = min(analysis)
+    benchmark.extra_info["wanted_s"] = 3.0 * min(analysis)
     benchmark.extra_info["peak_memory_gib"] = (
         resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 2**20
     )

@@ -29,7 +29,7 @@ class Work(NamedTuple):
     benchmark : str
         Name of the benchmark, with its parameters.
     wanted : float or None
-        What is aimed at [s].
+        What is aimed at [s]; None where the benchmark says it, or nothing does.
     part : int
         Parts of the benchmark that the row is one of.
     """
@@ -44,6 +44,7 @@ WORK = (
     Work("steady viscous lattice at a rotation speed", "test_steady_lattice[viscous]", 10e-3),
     Work("steady inviscid lattice", "test_steady_lattice[inviscid]"),
     Work("its trim to a thrust, viscous", "test_trim[viscous]"),
+    Work("velocities of as many pairs as the reference kernel's", "test_wake_kernel"),
     Work("trim, tones at 1 microphone", "test_full_evaluation[one-viscous-tones]"),
     Work("trim, tones at 9 microphones", "test_full_evaluation[nine-viscous-tones]", 30e-3),
     Work("the same with broadband", "test_full_evaluation[nine-viscous-broadband]", 40e-3),
@@ -104,8 +105,9 @@ def tables(kept: Mapping[str, Any]) -> dict[str, str]:
     times = [("work", "time", "wanted", "reference kernels")]
     for work in WORK:
         if work.benchmark in benchmarks:
-            seconds = benchmarks[work.benchmark]["median_s"] / work.part
-            wanted = "" if work.wanted is None else _time(work.wanted)
+            said = benchmarks[work.benchmark]
+            seconds, aim = said["median_s"] / work.part, work.wanted or said.get("wanted_s")
+            wanted = "" if aim is None else _time(aim)
             ratio = "" if reference is None else _ratio(seconds / reference)
             times.append((work.label, _time(seconds), wanted, ratio))
     floors = [("work", "over its floor")]

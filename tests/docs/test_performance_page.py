@@ -35,6 +35,7 @@ def run() -> dict[str, Any]:
         "benchmarks": [
             benchmark("test_steady_lattice[viscous]", 0.0096),
             benchmark("test_blade_elements", 0.17, floor_s=0.024, over_floor=7.08),
+            benchmark("test_gradient_of_a_design", 0.048, wanted_s=0.036),
             benchmark("test_population[8]", 1.0, blades_per_second=8.0, blade_bytes=2**21),
         ],
     }
@@ -53,6 +54,7 @@ def test_a_run_becomes_tables(script: ModuleType, run: dict[str, Any]) -> None:
     assert rows == [
         "| steady viscous lattice at a rotation speed | 9.6 ms | 10 ms | 2.4 |",
         "| blade elements, a point of 1,000 | 170 µs | 200 µs | 0.043 |",
+        "| gradient of 3 responses by 30 variables | 48 ms | 36 ms | 12 |",
     ]
     assert tables["floors"].splitlines()[2:] == ["| `test_blade_elements` | 7.1 |"]
     assert tables["blades"].splitlines()[2:] == ["| 8 | 8.0 | 2 |"]
