@@ -13,6 +13,7 @@ import openmdao.api as om
 
 from propmdao.components.drivers.search_history import (
     SearchHistory,
+    SearchRecorder,
     Trial,
     read_history,
     trial_of,
@@ -111,7 +112,7 @@ def run_slsqp(
         watch, optimizer="SLSQP", tol=tolerance, maxiter=iterations, disp=False
     )
     path = os.path.abspath(file)  # a relative one OpenMDAO takes from its own output folder
-    prob.driver.add_recorder(om.SqliteRecorder(path, record_viewer_data=False))
+    prob.driver.add_recorder(SearchRecorder(path, record_viewer_data=False))
     started = time.perf_counter()
     prob.run_model()
     prob.compute_totals()

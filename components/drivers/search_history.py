@@ -34,6 +34,21 @@ class SearchHistory:
     constraint: list[str]
 
 
+class SearchRecorder(om.SqliteRecorder):
+    """OpenMDAO's recorder that does not wait for the disk.
+
+    OpenMDAO has each case written four times before the next design is run: a millisecond or two on
+    a fast disk, far longer on a slow one. Here the system writes when it has time, whatever
+    becomes of this process; only where the whole machine goes down cases may be missing.
+    """
+
+    def startup(self, recording_requester: Any, comm: Any = None) -> None:
+        """Prepare for a new run."""
+        super().startup(recording_requester, comm)
+        if self.connection:  # none where another process of MPI records
+            self.connection.execute("PRAGMA synchronous = OFF")
+
+
 class Trial(NamedTuple):
     """One design of a `SearchHistory`.
 

@@ -18,7 +18,11 @@ from propmdao.commands.output.progress import progress
 from propmdao.components.drivers.best_design_file import write_best_design
 from propmdao.components.drivers.differential_evolution_driver import DifferentialEvolutionDriver
 from propmdao.components.drivers.gradient_search import run_slsqp
-from propmdao.components.drivers.search_history import SearchHistory, read_history
+from propmdao.components.drivers.search_history import (
+    SearchHistory,
+    SearchRecorder,
+    read_history,
+)
 from propmdao.propeller.design_choices import RESPONSES
 from propmdao.runtime.terminal import print_line
 
@@ -147,7 +151,7 @@ def _evolve(
         f" {generation.failed} failed"
     )
     prob.driver.add_recorder(
-        om.SqliteRecorder(str((folder / _CASES).absolute()), record_viewer_data=False)
+        SearchRecorder(str((folder / _CASES).absolute()), record_viewer_data=False)
     )
     try:
         prob.run_driver()
