@@ -40,7 +40,8 @@ class Derivatives(Protocol):
         """Return derivatives by every input of the sum of the outputs weighted with `seeds`."""
 
     def release(self) -> None:
-        """Let go what takes much memory; a further product makes it again."""
+        """Let go what takes much memory, if anything; a further product makes it again."""
+        return
 
 
 class FunctionDerivatives:

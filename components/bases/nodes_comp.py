@@ -282,7 +282,7 @@ class NodesComp(JaxComponent):
         return values[name] if shape is None else values[name].reshape(-1, *shape)[node]
 
 
-class _Gradients:
+class _Gradients(Derivatives):
     """Derivatives of few numbers as gradients, each taken when it is first asked for.
 
     One takes a product back for each of its numbers. Several points that all kept their
@@ -306,16 +306,11 @@ class _Gradients:
 
     def reverse(self, seeds: Arrays) -> Mapping[str, Any]:
         gradients = self._of([name for name, seed in seeds.items() if seed.any()])
-        weights = np.concatenate([seeds[name] for name in gradients])
-        together = zip(*(gradient.items() for gradient in gradients.values()), strict=True)
+        inputs = next(iter(gradients.values()))
         return {
-            parts[0][0]: np.tensordot(weights, np.concatenate([part for _, part in parts]), 1)
-            for parts in together
+            name: sum(np.tensordot(seeds[output], g[name], 1) for output, g in gradients.items())
+            for name in inputs
         }
-
-    def release(self) -> None:
-        self._derivatives.release()
-        self._known.clear()
 
     def _of(self, outputs: Collection[str]) -> dict[str, Arrays]:
         """Gradients of outputs by every input, the numbers of an output leading."""

@@ -65,11 +65,13 @@ def packed(arrays: Any) -> PackedArrays:
         The same in few arrays.
     """
     leaves, tree = jax.tree.flatten(arrays)
-    is_small = [leaf.dtype == float and leaf.size < _SMALL for leaf in leaves]
-    small = [leaf.ravel() for leaf, small in zip(leaves, is_small, strict=True) if small]
-    return PackedArrays(
-        jnp.concatenate([*small, jnp.zeros(0)]),
-        tuple(leaf for leaf, small in zip(leaves, is_small, strict=True) if not small),
-        tree,
-        tuple(leaf.shape if small else None for leaf, small in zip(leaves, is_small, strict=True)),
-    )
+    small, others = [jnp.zeros(0)], []
+    shapes: list[tuple[int, ...] | None] = []
+    for leaf in leaves:
+        if leaf.dtype == float and leaf.size < _SMALL:
+            small.append(leaf.ravel())
+            shapes.append(leaf.shape)
+        else:
+            others.append(leaf)
+            shapes.append(None)
+    return PackedArrays(jnp.concatenate(small), tuple(others), tree, tuple(shapes))

@@ -111,8 +111,7 @@ def run_slsqp(
     prob.driver = _WatchedDriver(
         watch, optimizer="SLSQP", tol=tolerance, maxiter=iterations, disp=False
     )
-    path = os.path.abspath(file)  # a relative one OpenMDAO takes from its own output folder
-    prob.driver.add_recorder(SearchRecorder(path, record_viewer_data=False))
+    prob.driver.add_recorder(SearchRecorder(file))
     started = time.perf_counter()
     prob.run_model()
     prob.compute_totals()
@@ -121,4 +120,4 @@ def run_slsqp(
         prob.run_driver()
     finally:
         prob.cleanup()
-    return Search(read_history(prob, path), time.perf_counter() - compiled, compiled - started)
+    return Search(read_history(prob, file), time.perf_counter() - compiled, compiled - started)

@@ -40,7 +40,16 @@ class SearchRecorder(om.SqliteRecorder):
     OpenMDAO has each case written four times before the next design is run: a millisecond or two on
     a fast disk, far longer on a slow one. Here the system writes when it has time, whatever
     becomes of this process; only where the whole machine goes down cases may be missing.
+
+    Parameters
+    ----------
+    file : path
+        File of the cases.
     """
+
+    def __init__(self, file: str | os.PathLike[str]) -> None:
+        # A relative path OpenMDAO takes from its own output folder.
+        super().__init__(os.path.abspath(file), record_viewer_data=False)
 
     def startup(self, recording_requester: Any, comm: Any = None) -> None:
         """Prepare for a new run."""

@@ -213,7 +213,7 @@ class MarchedAerodynamicsComp(NodesComp):
         return {**loads_outputs(loads, case.state, inputs), "loads": loads}
 
 
-class _Differences:
+class _Differences(Derivatives):
     """Derivatives of a march: products forward alone."""
 
     def __init__(self, component: MarchedAerodynamicsComp, inputs: Arrays) -> None:
@@ -227,6 +227,3 @@ class _Differences:
             "a march in time has derivatives forward alone, of two marches for each design"
             ' variable: set the problem up with setup(mode="fwd"), or leave out unsteady'
         )
-
-    def release(self) -> None:
-        """Nothing: no march is kept."""

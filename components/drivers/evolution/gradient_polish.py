@@ -158,12 +158,13 @@ def _derivatives(driver: Driver, slopes: Array, linear: _Totals) -> _Point:
     driver._total_jac = None
     totals = linear | driver._compute_totals(return_format="flat_dict")
     (objective,) = driver._objs
-    metas = driver._designvars
 
     def rows(name: str, size: int) -> Array:
         # A variable of linear constraints alone has no derivatives of the others.
-        none = {variable: np.zeros((size, meta["size"])) for variable, meta in metas.items()}
-        parts = [totals.get((name, variable), none[variable]) for variable in metas]
+        parts = [
+            totals.get((name, variable), np.zeros((size, meta["size"])))
+            for variable, meta in driver._designvars.items()
+        ]
         joined: Array = np.concatenate(parts, axis=1) * slopes
         return joined
 

@@ -150,9 +150,7 @@ def _evolve(
         f" violation {generation.max_violation:.2g}, {generation.evaluations} designs,"
         f" {generation.failed} failed"
     )
-    prob.driver.add_recorder(
-        SearchRecorder(str((folder / _CASES).absolute()), record_viewer_data=False)
-    )
+    prob.driver.add_recorder(SearchRecorder(folder / _CASES))
     try:
         prob.run_driver()
     finally:

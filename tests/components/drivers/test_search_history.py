@@ -14,7 +14,7 @@ def test_cases_are_recorded_and_no_write_is_waited_for(tmp_path: Path) -> None:
     prob.model.add_design_var("x", lower=-5.0, upper=5.0)
     prob.model.add_objective("f")
     prob.driver = om.ScipyOptimizeDriver(optimizer="SLSQP", disp=False)
-    recorder = SearchRecorder(str(tmp_path / "cases.sql"), record_viewer_data=False)
+    recorder = SearchRecorder(tmp_path / "cases.sql")
     prob.driver.add_recorder(recorder)
     prob.setup()
     assert prob.run_driver().success
